@@ -1,0 +1,284 @@
+//! A scene, complete and validated: everything in SI units, every reference resolved.
+
+use crate::frame::{End, Pose};
+use crate::geometry::{Point, Region, Vector};
+use crate::settings::{FrameSettings, GrowthSettings, OutputSettings, PlaneState, SolverSettings};
+use serde::{Deserialize, Serialize};
+
+/// What the solver is asked to compute. Made by [`crate::load`]; every number is finite and in its range.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Scene {
+    /// Name, used as prefix of files.
+    pub name: String,
+    /// SHA-256 over the scene file, the overrides and the drawings, in hexadecimal.
+    pub hash: String,
+    /// Plane strain or plane stress.
+    pub plane: PlaneState,
+    /// Materials that bodies refer to by index.
+    pub materials: Vec<Material>,
+    /// Bodies.
+    pub bodies: Vec<Body>,
+    /// Initial cracks.
+    pub cracks: Vec<Crack>,
+    /// Rigid obstacles.
+    pub colliders: Vec<Collider>,
+    /// Acceleration of gravity [m/s²].
+    pub gravity: Vector,
+    /// Loads.
+    pub loads: Vec<Load>,
+    /// Supports and prescribed motions.
+    pub supports: Vec<Support>,
+    /// Distance between neighbouring particles [m].
+    pub particle_spacing: f64,
+    /// Distance between neighbouring grid nodes h [m].
+    pub cell_size: f64,
+    /// Solver.
+    pub solver: SolverSettings,
+    /// Growth of cracks.
+    pub growth: GrowthSettings,
+    /// Frames.
+    pub frames: FrameSettings,
+    /// Output.
+    pub output: OutputSettings,
+}
+
+/// Material constants.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Material {
+    /// Name.
+    pub name: String,
+    /// Young's modulus E [Pa].
+    pub young_modulus: f64,
+    /// Poisson's ratio ν [–].
+    pub poisson_ratio: f64,
+    /// Density ρ [kg/m³].
+    pub density: f64,
+    /// Fracture toughness K_Ic [Pa·√m].
+    pub fracture_toughness: f64,
+    /// Plasticity; none: elastic.
+    pub plasticity: Option<Plasticity>,
+}
+
+/// Snow plasticity (Stomakhin et al. 2013).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Plasticity {
+    /// Critical compression θ_c [–].
+    pub critical_compression: f64,
+    /// Critical stretch θ_s [–].
+    pub critical_stretch: f64,
+    /// Hardening ξ [–].
+    pub hardening: f64,
+}
+
+/// A body.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Body {
+    /// Name.
+    pub name: String,
+    /// Where it is at rest.
+    pub region: Region,
+    /// Index of its material.
+    pub material: usize,
+    /// Initial velocities, added up.
+    pub velocities: Vec<InitialVelocity>,
+}
+
+/// A part of the initial velocity field: v(X) = `velocity` + `angular_velocity` × (X − `center`) within `selection`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct InitialVelocity {
+    /// Where it applies.
+    pub selection: Selection,
+    /// Uniform part [m/s].
+    pub velocity: Vector,
+    /// Rotation, counter-clockwise [rad/s].
+    pub angular_velocity: f64,
+    /// Centre of the rotation [m].
+    pub center: Point,
+}
+
+/// An initial crack.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Crack {
+    /// Name.
+    pub name: String,
+    /// Index of the body it runs in.
+    pub body: usize,
+    /// Points from start to end [m].
+    pub points: Vec<Point>,
+    /// Whether the first point is a live tip.
+    pub start_live: bool,
+    /// Whether the last point is a live tip.
+    pub end_live: bool,
+    /// Path that the tip at the first point follows, beginning at that tip.
+    pub start_guide: Option<Guide>,
+    /// Path that the tip at the last point follows, beginning at that tip.
+    pub end_guide: Option<Guide>,
+}
+
+impl Crack {
+    /// The guide of one tip.
+    pub fn guide(&self, end: End) -> Option<&Guide> {
+        match end {
+            End::Start => self.start_guide.as_ref(),
+            End::End => self.end_guide.as_ref(),
+        }
+    }
+}
+
+/// A drawn path for a crack tip.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Guide {
+    /// Name.
+    pub name: String,
+    /// Points, the first at the tip [m], at rest.
+    pub points: Vec<Point>,
+}
+
+/// A shape that selects points.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Selection {
+    /// Everything.
+    All,
+    /// One body, whole.
+    Body(usize),
+    /// Points within a region (edges included).
+    Region(Region),
+    /// Points within `radius` of one of `points` [m].
+    Near {
+        /// Centres [m].
+        points: Vec<Point>,
+        /// Distance [m].
+        radius: f64,
+    },
+    /// The points of the particle layer along one side of the bounding box of a body (or of all bodies).
+    Edge {
+        /// Which side.
+        side: BoxSide,
+        /// Body; none: all.
+        body: Option<usize>,
+    },
+}
+
+/// A side of a bounding box.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum BoxSide {
+    /// Lowest x.
+    Left,
+    /// Highest x.
+    Right,
+    /// Lowest y.
+    Bottom,
+    /// Highest y.
+    Top,
+}
+
+/// A piecewise linear factor over time; before the first and after the last point constant. Empty: always 1.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Curve {
+    /// (time [s], factor), times rising.
+    pub points: Vec<(f64, f64)>,
+}
+
+impl Curve {
+    /// Factor at `time`.
+    pub fn value(&self, time: f64) -> f64 {
+        let p = &self.points;
+        let (Some(first), Some(last)) = (p.first(), p.last()) else { return 1.0 };
+        if time <= first.0 {
+            return first.1;
+        }
+        if time >= last.0 {
+            return last.1;
+        }
+        let next = p.partition_point(|q| q.0 <= time);
+        let ((t0, f0), (t1, f1)) = (p[next - 1], p[next]);
+        f0 + (f1 - f0) * (time - t0) / (t1 - t0)
+    }
+}
+
+/// A load.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Load {
+    /// Where it applies.
+    pub selection: Selection,
+    /// What it is.
+    pub kind: LoadKind,
+    /// How it changes with time.
+    pub curve: Curve,
+}
+
+/// Kinds of loads.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum LoadKind {
+    /// Total force per unit thickness, shared among the selected particles by their volume [N/m].
+    Force(Vector),
+    /// Force per area of the selected edge [Pa]; needs [`Selection::Edge`].
+    Traction(Vector),
+    /// Force on the particle nearest to each point: (place [m], force per unit thickness [N/m]).
+    PerPoint(Vec<(Point, Vector)>),
+}
+
+/// A prescribed motion of the selected material.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Support {
+    /// Where it applies.
+    pub selection: Selection,
+    /// Prescribed velocity along x and y [m/s]; none: free in that direction.
+    pub velocity: [Option<f64>; 2],
+    /// How the velocity changes with time.
+    pub curve: Curve,
+}
+
+/// A rigid obstacle.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Collider {
+    /// Name.
+    pub name: String,
+    /// Shape in its own frame.
+    pub shape: ColliderShape,
+    /// Poses over time (time [s], pose), times rising; linear between, constant outside. At least one.
+    pub keyframes: Vec<(f64, Pose)>,
+    /// What happens at contact.
+    pub contact: Contact,
+    /// Coulomb friction for slip and separate [–].
+    pub friction: f64,
+}
+
+/// Shape of a collider in its own frame.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum ColliderShape {
+    /// Everything below the line through the origin; `normal` (unit) points out of the obstacle.
+    HalfPlane {
+        /// Outward unit normal.
+        normal: Vector,
+    },
+    /// Disc around the origin.
+    Disc {
+        /// Radius [m].
+        radius: f64,
+    },
+    /// Rectangle around the origin.
+    Box {
+        /// Half width and half height [m].
+        half_extents: Vector,
+    },
+    /// Simple polygon, counter-clockwise.
+    Polygon {
+        /// Ring [m].
+        ring: Vec<Point>,
+    },
+}
+
+/// What happens when material touches a collider.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Contact {
+    /// Pushed out, may leave; friction along the surface.
+    #[default]
+    Separate,
+    /// Stays on the surface once it touches, slides along it.
+    Slip,
+    /// Takes the collider's velocity.
+    Stick,
+}

@@ -1,0 +1,230 @@
+//! Settings that a scene file and the solver share word for word.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// How stress out of the plane is treated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PlaneState {
+    /// Thick body: no strain out of the plane.
+    #[default]
+    Strain,
+    /// Thin body: no stress out of the plane.
+    Stress,
+}
+
+/// A named set of solver settings to start from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SolverPreset {
+    /// The recommended settings.
+    #[default]
+    Standard,
+    /// The scheme of Fumoto 2022: updated Lagrangian, cubic B-spline, PIC, 16-segment contour of 2 cells without area
+    /// term, crack opening displacement split, half-cell growth. About 10 to 20 % off in K_I.
+    Thesis,
+}
+
+/// Where kernels live.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Formulation {
+    /// Total where every material is elastic and strains are expected to be small, updated elsewhere.
+    #[default]
+    Auto,
+    /// Total Lagrangian: kernels on the reference lattice, computed once.
+    Total,
+    /// Updated Lagrangian: kernels on the current positions, computed every step.
+    Updated,
+}
+
+/// Interpolation between particles and grid nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Kernel {
+    /// Bilinear hat on the particle position.
+    Bilinear,
+    /// Bilinear hat averaged over the particle's domain (uniform GIMP).
+    Gimp,
+    /// Quadratic B-spline.
+    Quadratic,
+    /// Cubic B-spline.
+    Cubic,
+}
+
+/// How velocities go back from the grid to the particles (updated Lagrangian only).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Transfer {
+    /// Grid velocity only; damps every wave.
+    Pic,
+    /// `flip` parts of the grid's velocity change added to the particle, the rest PIC; 1 is pure FLIP.
+    Flip(f64),
+    /// Affine PIC.
+    Apic,
+    /// Extended PIC of order 2.
+    Xpic,
+}
+
+/// How the energy release rate is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum JMethod {
+    /// Integral over a circle of 16 segments.
+    Contour,
+    /// Integral over a disc, particles as quadrature points.
+    Domain,
+}
+
+/// How J is split into K_I and K_II.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ModeSplit {
+    /// By the ratio of opening and sliding of the crack faces behind the tip.
+    OpeningDisplacement,
+    /// By the interaction integral with Williams' fields.
+    Interaction,
+}
+
+/// How the material around a tip inside a cell is divided.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum TipDivision {
+    /// By line crossing alone: the effective tip jumps from node to node.
+    LineCrossing,
+    /// Partly cut particles: the effective tip moves smoothly.
+    PartlyCut,
+}
+
+/// What to do when the total Lagrangian formulation leaves its range.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum OnDistortion {
+    /// Stop with the particle, the time and the remedy.
+    #[default]
+    Stop,
+    /// Hand over to the updated Lagrangian formulation.
+    Switch,
+}
+
+/// The solver's settings, complete: every choice made.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SolverSettings {
+    /// Where kernels live.
+    pub formulation: Formulation,
+    /// What to do when the total formulation leaves its range.
+    pub on_distortion: OnDistortion,
+    /// Interpolation.
+    pub kernel: Kernel,
+    /// Grid to particle transfer.
+    pub transfer: Transfer,
+    /// The user's own time step [s]; none: chosen from the stability limit.
+    pub time_step: Option<f64>,
+    /// Fraction of the stability limit that is used, 0 to 1.
+    pub courant: f64,
+    /// Damping rate: velocities decay as exp(-damping t) [1/s].
+    pub damping: f64,
+    /// Contact between the two faces of a crack.
+    pub crack_contact: bool,
+    /// Coulomb friction between crack faces; infinite: stick.
+    pub crack_friction: f64,
+    /// Material around the tip.
+    pub tip_division: TipDivision,
+    /// How J is measured.
+    pub j_method: JMethod,
+    /// Radius of contour or domain, in cells.
+    pub j_radius: f64,
+    /// Whether the dynamic area term is added to J.
+    pub area_term: bool,
+    /// How J is split.
+    pub mode_split: ModeSplit,
+}
+
+/// When and where cracks grow, complete.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct GrowthSettings {
+    /// Whether cracks grow at all.
+    pub enabled: bool,
+    /// Length of one increment, in cells.
+    pub increment: f64,
+    /// Scales K_II in the direction of growth only: 0 straight, 1 physical, above 1 exaggerated.
+    pub bending: f64,
+    /// Highest speed of a tip as a fraction of the Rayleigh wave speed, 0 to 1.
+    pub speed_limit: f64,
+}
+
+/// Which frames to write.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct FrameSettings {
+    /// Number of the first frame: the state at rest, time 0.
+    pub first: i64,
+    /// Number of the last frame.
+    pub last: i64,
+    /// Frames per second of simulated time [1/s].
+    pub rate: f64,
+}
+
+impl FrameSettings {
+    /// Time of the frame `number` [s].
+    pub fn time(&self, number: i64) -> f64 {
+        (number - self.first) as f64 / self.rate
+    }
+
+    /// Number of frames.
+    pub fn count(&self) -> usize {
+        (self.last - self.first + 1).max(0) as usize
+    }
+}
+
+/// A part of the scene that can be written as a mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Part {
+    /// The body with its cracks cut out, extruded.
+    Cracked,
+    /// The body without its cracks, extruded.
+    Body,
+    /// The crack faces, as a surface.
+    Faces,
+    /// The colliders, extruded.
+    Collider,
+    /// The particles, as points.
+    Particles,
+}
+
+/// A mesh file format.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Format {
+    /// Binary glTF 2.0.
+    Glb,
+    /// Binary PLY.
+    Ply,
+}
+
+/// The axis that points up in formats that do not fix it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum UpAxis {
+    /// y up, the drawing in the x–y plane.
+    Y,
+    /// z up, the drawing in the x–z plane.
+    #[default]
+    Z,
+}
+
+/// What to write.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct OutputSettings {
+    /// Thickness of the solid [m].
+    pub thickness: f64,
+    /// Formats.
+    pub formats: Vec<Format>,
+    /// Parts of the scene.
+    pub parts: Vec<Part>,
+    /// Up axis of PLY files (glTF is always y up).
+    pub up: UpAxis,
+    /// Fragments of less area than this are dropped [m²].
+    pub smallest_fragment: f64,
+}

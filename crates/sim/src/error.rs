@@ -1,0 +1,58 @@
+//! What can go wrong in a simulation.
+
+/// Why a simulation cannot start or go on.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SimulationError {
+    /// The user's own time step is above the stability limit.
+    #[error(
+        "time step {time_step:e} s is above the stability limit {limit:e} s; leave `solver.time_step` out or set it to at most the limit"
+    )]
+    TimeStepTooLarge {
+        /// What was asked for [s].
+        time_step: f64,
+        /// Largest stable step [s].
+        limit: f64,
+    },
+    /// No particle fits into a body.
+    #[error("body `{body}` holds no particle at a spacing of {spacing} m; make `grid.particle_spacing` smaller")]
+    NoParticles {
+        /// Name of the body.
+        body: String,
+        /// Particle spacing [m].
+        spacing: f64,
+    },
+    /// More memory than the machine has would be needed.
+    #[error(
+        "{particles} particles need about {needed} MiB, more than the {available} MiB this machine has free; make `grid.particle_spacing` larger"
+    )]
+    TooManyParticles {
+        /// Number of particles.
+        particles: u64,
+        /// Memory needed [MiB].
+        needed: u64,
+        /// Memory available [MiB].
+        available: u64,
+    },
+    /// A selection meets no particle.
+    #[error("{what} selects no particle; check its shape against the bodies")]
+    EmptySelection {
+        /// Which load or support.
+        what: String,
+    },
+    /// The simulation became unstable or left the range of the method.
+    #[error("the simulation failed at t = {time:e} s near ({x}, {y}) m: {cause}")]
+    Unstable {
+        /// When [s].
+        time: f64,
+        /// Where, x [m].
+        x: f64,
+        /// Where, y [m].
+        y: f64,
+        /// What happened, and the remedy.
+        cause: String,
+    },
+    /// A saved state does not belong to this scene or version.
+    #[error("the saved state cannot be used: {0}; start again without it")]
+    BadState(String),
+}
