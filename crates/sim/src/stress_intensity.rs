@@ -1,0 +1,264 @@
+//! Stress intensity factors: from J, when and where a crack grows, and what the speed of the tip changes.
+
+use crate::Elastic;
+use fissure_scene::Vector;
+use std::f64::consts::PI;
+
+/// Stress intensity factors of a crack tip, in its frame (e1 = growth direction, e2 = e1 turned by +90°).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct StressIntensity {
+    /// K_I [Pa·√m], positive opening.
+    pub mode_1: f64,
+    /// K_II [Pa·√m], positive when s12 > 0 ahead of the tip.
+    pub mode_2: f64,
+}
+
+impl StressIntensity {
+    /// Splits J by the ratio of opening and sliding: K_I = d_I/|d| √(E'J), K_II likewise.
+    ///
+    /// `opening`: upper face minus lower face behind the tip, in the tip frame (x sliding d_II, y opening d_I) [m]; only its direction counts.
+    /// `j_integral` [J/m²]; `effective_modulus` E' [Pa]. J ≤ 0 or no opening at all: both zero. d_I < 0: K_I = 0, the crack is closed;
+    /// K_II keeps its share, so that faces pressed into each other do not turn the energy of compression into shear.
+    pub fn from_opening(j_integral: f64, opening: Vector, effective_modulus: f64) -> Self {
+        let size = opening.norm();
+        // Written so that a NaN, too, means "nothing known, no growth".
+        if !(j_integral > 0.0 && size > 0.0) {
+            return Self::default();
+        }
+        let amplitude = (effective_modulus * j_integral).sqrt();
+        Self { mode_1: opening.y.max(0.0) / size * amplitude, mode_2: opening.x / size * amplitude }
+    }
+
+    /// Energy release rate of a resting tip, G = (K_I² + K_II²)/E' [J/m²] (Irwin).
+    pub fn energy_release_rate(&self, effective_modulus: f64) -> f64 {
+        (self.mode_1 * self.mode_1 + self.mode_2 * self.mode_2) / effective_modulus
+    }
+
+    /// Energy release rate of a tip that moves at `speed` [m/s], G = (A_I K_I² + A_II K_II²)/E' [J/m²].
+    pub fn moving_energy_release_rate(&self, elastic: &Elastic, speed: f64) -> f64 {
+        let [a_1, a_2] = crack_speed_factors(elastic, speed);
+        // An infinite factor times a vanishing K is a limit of its own, not a number.
+        let part = |a: f64, k: f64| if k == 0.0 { 0.0 } else { a * k * k };
+        (part(a_1, self.mode_1) + part(a_2, self.mode_2)) / elastic.effective_modulus
+    }
+
+    /// Kink angle θ_c of maximum hoop stress (Erdogan & Sih 1963) [rad], positive counter-clockwise.
+    ///
+    /// θ = 2 atan2(-2 K_II, K_I + √(K_I² + 8 K_II²)), with K_II scaled by `bending`: 0 straight, 1 physical. Pure shear gives ∓70.53°.
+    /// A closed crack (K_I < 0) counts as K_I = 0; without any load the angle is 0.
+    pub fn kink_angle(&self, bending: f64) -> f64 {
+        let (k_1, k_2) = (self.mode_1.max(0.0), bending * self.mode_2);
+        // Adding zero turns -0 into 0.
+        2.0 * (-2.0 * k_2).atan2(k_1 + k_1.hypot(8.0_f64.sqrt() * k_2)) + 0.0
+    }
+
+    /// Equivalent stress intensity K_eq(θ) = cos(θ/2) [K_I cos²(θ/2) - (3/2) K_II sin θ] [Pa·√m], to be compared with K_Ic.
+    ///
+    /// The hoop stress at `angle` [rad] times √(2πr); at the kink angle (bending 1) its maximum. The thesis' eq. 34 has the opposite sign of
+    /// K_II, by which a crack under shear never starts. A closed crack (K_I < 0) counts as K_I = 0.
+    pub fn equivalent(&self, angle: f64) -> f64 {
+        let half_cosine = (0.5 * angle).cos();
+        half_cosine * (self.mode_1.max(0.0) * half_cosine * half_cosine - 1.5 * self.mode_2 * angle.sin())
+    }
+}
+
+/// A_I(v) and A_II(v) [–] of G = (A_I K_I² + A_II K_II²)/E' for a tip moving at `speed` v [m/s]; 1 at rest, infinite from c_R on.
+///
+/// A_I = 4 v² α_d / ((κ+1) c_s² D), A_II with α_s for α_d; D = 4 α_d α_s - (1+α_s²)², α² = 1 - v²/c². Source: Freund 1990.
+pub fn crack_speed_factors(elastic: &Elastic, speed: f64) -> [f64; 2] {
+    let squares = SpeedSquares::new(elastic, speed);
+    let scaled = squares.rayleigh_function_over_shear();
+    // NaN where α is no longer real.
+    if scaled.is_nan() || scaled <= 0.0 {
+        return [f64::INFINITY; 2];
+    }
+    let factor = 4.0 / ((elastic.kolosov + 1.0) * scaled);
+    [factor * (1.0 - squares.dilatational).sqrt(), factor * (1.0 - squares.shear).sqrt()]
+}
+
+/// v²/c_d² and v²/c_s² of a moving tip.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SpeedSquares {
+    pub(crate) dilatational: f64,
+    pub(crate) shear: f64,
+    /// (c_s/c_d)².
+    ratio: f64,
+}
+
+impl SpeedSquares {
+    pub(crate) fn new(elastic: &Elastic, speed: f64) -> Self {
+        let ratio = elastic.mu / (elastic.lambda + 2.0 * elastic.mu);
+        let shear = speed * speed * elastic.density / elastic.mu;
+        Self { dilatational: ratio * shear, shear, ratio }
+    }
+
+    /// D c_s²/v² = [4 α_d α_s - (1+α_s²)²] c_s²/v², which has the limit 2(1 - c_s²/c_d²) at rest, without cancellation there.
+    pub(crate) fn rayleigh_function_over_shear(&self) -> f64 {
+        // 4(w - 1) + 4q - q² with w = α_d α_s, q = v²/c_s²; 1 - w² = s, so that w - 1 = -s/(1+w); then all of it over q.
+        let w = ((1.0 - self.dilatational) * (1.0 - self.shear)).sqrt();
+        let s_over_q = self.ratio + 1.0 - self.dilatational;
+        4.0 * (1.0 - s_over_q / (1.0 + w)) - self.shear
+    }
+}
+
+/// Freund's universal function k(v) [–]: K_I(t, v) = k(v) K_I(t, 0) for a half-infinite crack; 1 at rest, 0 at and above c_R.
+///
+/// k = (1 - v/c_R)/√(1 - v/c_d) · exp((1/π) ∫ ϑ(x)/(1/v - x) dx) over 1/c_d ≤ x ≤ 1/c_s, with
+/// ϑ = atan[4x² √((x²-a²)(b²-x²)) / (b²-2x²)²], a = 1/c_d, b = 1/c_s. Source: Freund 1990.
+pub fn universal_function(elastic: &Elastic, speed: f64) -> f64 {
+    let rayleigh = elastic.rayleigh_wave_speed();
+    if speed >= rayleigh {
+        return 0.0;
+    }
+    let (a, b) = (1.0 / elastic.dilatational_wave_speed(), 1.0 / elastic.shear_wave_speed());
+    // With x on a half circle over [a, b] the integrand becomes smooth and periodic, and the midpoint rule gains digits in
+    // proportion to the number of points; the nearest singularity is 1/c_R. 64 points: below 1e-14 for 0 ≤ ν ≤ 0.49.
+    const POINTS: usize = 64;
+    let step = PI / POINTS as f64;
+    let mut integral = 0.0;
+    for i in 0..POINTS {
+        let (sine, cosine) = ((i as f64 + 0.5) * step).sin_cos();
+        let x = 0.5 * (a + b) - 0.5 * (b - a) * cosine;
+        // (x-a)(b-x) = ((b-a)/2)² sin².
+        let root = 0.5 * (b - a) * sine * ((x + a) * (b + x)).sqrt();
+        let angle = (4.0 * x * x * root).atan2((b * b - 2.0 * x * x).powi(2));
+        integral += angle * speed / (1.0 - speed * x) * 0.5 * (b - a) * sine * step;
+    }
+    (1.0 - speed / rayleigh) / (1.0 - speed * a).sqrt() * (integral / PI).exp()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fissure_scene::{Material, PlaneState};
+
+    fn elastic(poisson_ratio: f64, plane: PlaneState) -> Elastic {
+        let material = Material {
+            name: String::new(),
+            young_modulus: 210e9,
+            poisson_ratio,
+            density: 8000.0,
+            fracture_toughness: 1.0,
+            plasticity: None,
+        };
+        Elastic::new(&material, plane)
+    }
+
+    fn k(mode_1: f64, mode_2: f64) -> StressIntensity {
+        StressIntensity { mode_1, mode_2 }
+    }
+
+    /// Truth: maximum of the hoop stress, tabulated to 6 digits: (K_II/K_I, θ [°], K_hoop/K_I).
+    #[test]
+    fn kink_angle_and_equivalent_agree_with_the_table() {
+        let table = [
+            (0.01, -1.14565, 1.00015),
+            (0.05, -5.69652, 1.00373),
+            (0.1, -11.2029, 1.01475),
+            (0.2, -21.0888, 1.05631),
+            (0.3, -29.1026, 1.11867),
+            (0.5, -40.2078, 1.28279),
+            (0.75, -48.3032, 1.52619),
+            (1.0, -53.1301, 1.78885),
+            (2.0, -61.3418, 2.90054),
+            (5.0, -66.7596, 6.3369),
+            (10.0, -68.6309, 12.1009),
+            (1e9, -70.5288, 1.1547e9),
+        ];
+        for (ratio, degrees, hoop) in table {
+            for sign in [1.0, -1.0] {
+                let state = k(2e6, sign * ratio * 2e6);
+                let angle = state.kink_angle(1.0);
+                assert!((angle.to_degrees() - sign * degrees).abs() < 5.1e-5, "{ratio}: {}", angle.to_degrees());
+                assert!((state.equivalent(angle) / 2e6 - hoop).abs() < 5.1e-6 * hoop);
+            }
+        }
+    }
+
+    /// Truth: brute force over all angles.
+    #[test]
+    fn no_angle_has_more_hoop_stress() {
+        for i in 0..60 {
+            let phase = -0.5 * PI + PI * f64::from(i) / 59.0;
+            let state = k(phase.cos(), phase.sin());
+            let best = state.equivalent(state.kink_angle(1.0));
+            let brute = (-1000..=1000).map(|j| state.equivalent(f64::from(j) * 1e-3 * PI)).fold(f64::MIN, f64::max);
+            assert!(best >= brute - 1e-14, "{state:?}: {best} below {brute}");
+        }
+    }
+
+    #[test]
+    fn singular_states_are_quiet() {
+        assert_eq!(k(0.0, 0.0).kink_angle(1.0).to_bits(), 0.0_f64.to_bits());
+        assert_eq!(k(0.0, 0.0).equivalent(0.3), 0.0);
+        assert_eq!(k(3.0, 0.0).kink_angle(1.0).to_bits(), 0.0_f64.to_bits());
+        // Closed: no growth by compression, shear as in pure shear.
+        assert_eq!(k(-3.0, 0.0).kink_angle(1.0), 0.0);
+        assert_eq!(k(-3.0, 0.0).equivalent(0.0), 0.0);
+        let closed_shear = k(-3.0, 1.0);
+        assert!((closed_shear.kink_angle(1.0) + (1.0_f64 / 3.0).acos()).abs() < 1e-15);
+        assert!((closed_shear.equivalent(closed_shear.kink_angle(1.0)) - 2.0 / 3.0_f64.sqrt()).abs() < 1e-15);
+        // Bending acts on the direction alone.
+        assert_eq!(k(1.0, 1.0).kink_angle(0.0), 0.0);
+        assert_eq!(k(1.0, 1.0).kink_angle(2.0), k(1.0, 2.0).kink_angle(1.0));
+    }
+
+    #[test]
+    fn opening_splits_j() {
+        let state = StressIntensity::from_opening(8.0, Vector::new(-3e-6, 4e-6), 2.0);
+        assert!((state.mode_1 - 3.2).abs() < 1e-14 && (state.mode_2 + 2.4).abs() < 1e-14);
+        assert!((state.energy_release_rate(2.0) - 8.0).abs() < 1e-14);
+        let none = StressIntensity::default();
+        for (j, d) in
+            [(-76.0, [1.0, 1.0]), (0.0, [1.0, 1.0]), (8.0, [0.0, 0.0]), (f64::NAN, [1.0, 1.0]), (8.0, [0.0, -1.0])]
+        {
+            let split = StressIntensity::from_opening(j, Vector::new(d[0], d[1]), 2.0);
+            assert_eq!(split, none, "J = {j}, d = {d:?}");
+        }
+        let closed = StressIntensity::from_opening(8.0, Vector::new(3.0, -4.0), 2.0);
+        assert!(closed.mode_1 == 0.0 && (closed.mode_2 - 2.4).abs() < 1e-14);
+    }
+
+    /// Truth: an independent adaptive quadrature, printed to 6 digits: (ν, state, v/c_R, k, A_I).
+    #[test]
+    fn functions_of_speed_agree_with_the_table() {
+        use PlaneState::{Strain, Stress};
+        let table = [
+            (0.2, Strain, 0.1, 0.940701, 1.00644),
+            (0.2, Stress, 0.5, 0.657999, 1.20768),
+            (0.3, Strain, 0.1, 0.940601, 1.00638),
+            (0.3, Strain, 0.3, 0.810615, 1.06187),
+            (0.3, Strain, 0.5, 0.659861, 1.20371),
+            (0.3, Strain, 0.7, 0.474496, 1.56144),
+            (0.3, Strain, 0.9, 0.213529, 3.26347),
+            (0.3, Stress, 0.9, 0.210722, 3.31384),
+            (0.35, Strain, 0.6, 0.570701, 1.33762),
+            (0.35, Stress, 0.2, 0.878039, 1.02627),
+        ];
+        for (nu, plane, fraction, k, a_1) in table {
+            let m = elastic(nu, plane);
+            let v = fraction * m.rayleigh_wave_speed();
+            let found = universal_function(&m, v);
+            assert!((found - k).abs() < 5.1e-7, "k({fraction} c_R) = {found}, table {k}");
+            assert!((crack_speed_factors(&m, v)[0] - a_1).abs() < 5.1e-6 * a_1.max(1.0));
+        }
+    }
+
+    #[test]
+    fn functions_of_speed_have_their_limits() {
+        let m = elastic(0.3, PlaneState::Strain);
+        let c_r = m.rayleigh_wave_speed();
+        for factor in crack_speed_factors(&m, 0.0) {
+            assert!((factor - 1.0).abs() < 1e-15);
+        }
+        // A - 1 is of the order of (v/c_s)², far below round-off here: no cancellation is left.
+        for factor in crack_speed_factors(&m, 1e-5) {
+            assert!((factor - 1.0).abs() < 1e-14);
+        }
+        assert_eq!(universal_function(&m, 0.0), 1.0);
+        assert_eq!(universal_function(&m, c_r), 0.0);
+        assert_eq!(crack_speed_factors(&m, 1.001 * c_r), [f64::INFINITY; 2]);
+        assert_eq!(crack_speed_factors(&m, 2.0 * c_r), [f64::INFINITY; 2]);
+        assert_eq!(k(0.0, 0.0).moving_energy_release_rate(&m, 2.0 * c_r), 0.0);
+    }
+}
