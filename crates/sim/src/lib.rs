@@ -2,11 +2,15 @@
 //!
 //! Touches no file and draws nothing. The same scene gives the same bytes for any number of threads.
 
+mod collider;
 mod constitutive;
+mod contour;
 mod elastic;
 mod error;
 mod kernel;
 mod simulation;
+mod stress_intensity;
+mod williams;
 
 pub use constitutive::{
     PlasticStep, cauchy_stress, energy_density, first_piola_stress, hardening_factor, kirchhoff_stress, plastic_step,
@@ -15,3 +19,5 @@ pub use constitutive::{
 pub use elastic::Elastic;
 pub use error::SimulationError;
 pub use simulation::{Estimate, Progress, Simulation};
+pub use stress_intensity::{StressIntensity, crack_speed_factors, universal_function};
+pub use williams::{TipField, moving_tip_fields, williams_fields};
