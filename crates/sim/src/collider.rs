@@ -13,6 +13,12 @@ pub(crate) struct Obstacle {
     friction: f64,
 }
 
+impl std::fmt::Debug for Obstacle {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Obstacle").field("keyframes", &self.keyframes).finish_non_exhaustive()
+    }
+}
+
 /// What a query needs to know of the shape, in its own frame.
 #[derive(Clone)]
 enum Outline {

@@ -5,11 +5,20 @@
 mod collider;
 mod constitutive;
 mod contour;
+mod crack;
+mod crossing;
+mod division;
 mod elastic;
 mod error;
+mod fields;
+mod grid;
 mod kernel;
+mod particles;
+mod saved;
 mod simulation;
+mod solver;
 mod stress_intensity;
+mod total;
 mod williams;
 
 pub use constitutive::{

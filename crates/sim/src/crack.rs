@@ -1,0 +1,196 @@
+//! Cracks while they live: where they run at rest, what their ends are, how far their tips have come.
+
+use crate::division::{CrackLine, LineEnd};
+use fissure_scene::{CrackEnd, End, Guide, Point, Scene, TipRecord, TipState, Vector, polyline_length};
+use serde::{Deserialize, Serialize};
+
+/// A crack. All positions are at rest; a solver knows where they are now.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct Crack {
+    /// Body it runs in.
+    pub(crate) body: u32,
+    /// Points from start to end [m].
+    pub(crate) points: Vec<Point>,
+    /// What the first and the last point are.
+    pub(crate) ends: [CrackEnd; 2],
+    /// The tips at the first and the last point; none where the drawing has no live tip.
+    pub(crate) tips: [Option<Tip>; 2],
+}
+
+/// A crack tip.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct Tip {
+    /// Life.
+    pub(crate) state: TipState,
+    /// Path to follow.
+    pub(crate) guide: Option<GuideWalk>,
+    /// The tip may not grow again before this time [s].
+    pub(crate) ready: f64,
+    /// Crack length this tip has added so far [m].
+    pub(crate) grown: f64,
+    /// `grown` at the last frame [m].
+    pub(crate) grown_at_frame: f64,
+    /// What was measured last.
+    pub(crate) measured: Measured,
+}
+
+/// What was measured at a tip last. Symbols and units as in [`TipRecord`].
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Measured {
+    pub(crate) j_integral: f64,
+    pub(crate) mode_1: f64,
+    pub(crate) mode_2: f64,
+    pub(crate) kink_angle: f64,
+    pub(crate) equivalent: f64,
+    pub(crate) fracture_toughness: f64,
+    pub(crate) contour_radius: f64,
+    pub(crate) radius_shrunk: bool,
+}
+
+/// How far a tip has come along its guide.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct GuideWalk {
+    guide: Guide,
+    /// Arc length from the beginning of the guide [m].
+    walked: f64,
+}
+
+impl GuideWalk {
+    /// The place on the guide `step` beyond where the tip is [m], and whether the guide ends there.
+    pub(crate) fn ahead(&self, step: f64) -> (Point, bool) {
+        let mut left = self.walked + step;
+        for w in self.guide.points.windows(2) {
+            let length = (w[1] - w[0]).norm();
+            if left < length {
+                return (w[0] + (w[1] - w[0]) * (left / length), false);
+            }
+            left -= length;
+        }
+        (self.guide.points[self.guide.points.len() - 1], true)
+    }
+
+    /// Moves on by `step` [m].
+    pub(crate) fn walk(&mut self, step: f64) {
+        self.walked += step;
+    }
+}
+
+/// Position in a pair [start, end].
+pub(crate) fn slot(end: End) -> usize {
+    match end {
+        End::Start => 0,
+        End::End => 1,
+    }
+}
+
+/// Both ends of a crack.
+pub(crate) const ENDS: [End; 2] = [End::Start, End::End];
+
+impl Crack {
+    /// The cracks of a scene.
+    pub(crate) fn of_scene(scene: &Scene) -> Vec<Self> {
+        scene.cracks.iter().map(|crack| Self::drawn(scene, crack)).collect()
+    }
+
+    fn drawn(scene: &Scene, crack: &fissure_scene::Crack) -> Self {
+        let region = &scene.bodies[crack.body].region;
+        let tolerance = 1e-6 * scene.cell_size;
+        let end_at = |p: Point| {
+            let on_ring = crate::particles::distance_to_rings(region, p) <= tolerance;
+            if on_ring || !region.contains(p) { CrackEnd::Mouth } else { CrackEnd::Tip }
+        };
+        let ends = [end_at(crack.points[0]), end_at(crack.points[crack.points.len() - 1])];
+        let tip = |end: End, live: bool| {
+            (live && ends[slot(end)] == CrackEnd::Tip).then(|| Tip {
+                state: TipState::Resting,
+                guide: crack.guide(end).map(|g| GuideWalk { guide: g.clone(), walked: 0.0 }),
+                ready: 0.0,
+                grown: 0.0,
+                grown_at_frame: 0.0,
+                measured: Measured::default(),
+            })
+        };
+        Self {
+            body: crack.body as u32,
+            points: crack.points.clone(),
+            ends,
+            tips: [tip(End::Start, crack.start_live), tip(End::End, crack.end_live)],
+        }
+    }
+
+    /// Position of an end at rest [m].
+    pub(crate) fn tip_position(&self, end: End) -> Point {
+        match end {
+            End::Start => self.points[0],
+            End::End => self.points[self.points.len() - 1],
+        }
+    }
+
+    /// Unit vector along the crack at rest, pointing ahead of the end.
+    pub(crate) fn ahead(&self, end: End) -> Vector {
+        let n = self.points.len();
+        match end {
+            End::Start => (self.points[0] - self.points[1]).normalize(),
+            End::End => (self.points[n - 1] - self.points[n - 2]).normalize(),
+        }
+    }
+
+    /// Adds a point at an end.
+    pub(crate) fn push(&mut self, end: End, point: Point) {
+        match end {
+            End::Start => self.points.insert(0, point),
+            End::End => self.points.push(point),
+        }
+    }
+
+    /// Length at rest [m].
+    pub(crate) fn length(&self) -> f64 {
+        polyline_length(&self.points)
+    }
+
+    /// Number of tips that may grow.
+    pub(crate) fn live_tips(&self) -> usize {
+        self.tips.iter().flatten().filter(|t| t.state.is_live()).count()
+    }
+
+    /// The crack as the division sees it, its points being at `points` (rest or current); open ends go `beyond` [m] farther.
+    pub(crate) fn line(&self, crack: usize, points: Vec<Point>, beyond: f64) -> CrackLine {
+        let end = |e: CrackEnd| match e {
+            CrackEnd::Tip => LineEnd::Tip,
+            CrackEnd::Mouth => LineEnd::Open(beyond),
+            CrackEnd::Junction { crack } => LineEnd::Junction { crack, beyond },
+        };
+        CrackLine { crack: crack as u32, points, start: end(self.ends[0]), end: end(self.ends[1]) }
+    }
+
+    /// The record of a tip for a frame; `position` [m] and `direction` [rad] are the current ones, `interval` [s] the time since the last frame.
+    pub(crate) fn record(
+        &self,
+        crack: usize,
+        end: End,
+        position: Point,
+        direction: f64,
+        interval: f64,
+    ) -> Option<TipRecord> {
+        let tip = self.tips[slot(end)].as_ref()?;
+        let m = tip.measured;
+        let speed = if interval > 0.0 { (tip.grown - tip.grown_at_frame) / interval } else { 0.0 };
+        Some(TipRecord {
+            crack: crack as u32,
+            end,
+            state: tip.state,
+            position,
+            direction,
+            j_integral: m.j_integral,
+            mode_1: m.mode_1,
+            mode_2: m.mode_2,
+            kink_angle: m.kink_angle,
+            equivalent: m.equivalent,
+            fracture_toughness: m.fracture_toughness,
+            speed,
+            length: self.length(),
+            contour_radius: m.contour_radius,
+            radius_shrunk: m.radius_shrunk,
+        })
+    }
+}

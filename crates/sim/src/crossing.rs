@@ -1,0 +1,187 @@
+//! The line-crossing test: does the straight line from a particle to a node cross a crack segment, and from which side?
+//!
+//! Nairn 2003 (CRAMP), as in the thesis, section 3.1.1. Signs come from an exact predicate. For a segment a → b, a particle p and a
+//! node n the four signs are those of the triangles (p, n, a), (p, n, b), (a, b, p), (a, b, n).
+//!
+//! | signs | meaning |
+//! |---|---|
+//! | − + + −, − + + 0, 0 + + 0, − 0 + 0 | crosses, particle above |
+//! | + − − +, + − − 0, 0 − − 0, + 0 − 0 | crosses, particle below |
+//! | − 0 + −, + 0 − + | crosses too: the line passes through b. The thesis' list leaves these out, so that a line through a vertex shared by two segments would cross neither; 0 + + − and 0 − − + (through a) stay out, so that it crosses just one |
+//! | 0 in the third place | the particle lies on the crack and counts as above |
+//!
+//! A node exactly on the crack is crossed to from either side: its own field stays empty there.
+
+use fissure_scene::{Point, orientation};
+use serde::{Deserialize, Serialize};
+
+/// A side of a crack, for one who walks from its start to its end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub(crate) enum Side {
+    /// On the left.
+    Above,
+    /// On the right.
+    Below,
+}
+
+impl Side {
+    /// The other side.
+    pub(crate) fn opposite(self) -> Self {
+        match self {
+            Self::Above => Self::Below,
+            Self::Below => Self::Above,
+        }
+    }
+
+    /// +1 above, −1 below.
+    pub(crate) fn sign(self) -> f64 {
+        match self {
+            Self::Above => 1.0,
+            Self::Below => -1.0,
+        }
+    }
+}
+
+/// How a line crosses a segment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Crossing {
+    /// The side the particle is on.
+    pub(crate) side: Side,
+    /// Whether the node lies on the crack itself: two segments that share the node then report one and the same crossing.
+    pub(crate) at_node: bool,
+}
+
+fn sign(value: f64) -> i8 {
+    (value > 0.0) as i8 - (value < 0.0) as i8
+}
+
+/// The crossing of the line from `particle` to `node` with the segment `a` → `b`, if any.
+pub(crate) fn crossing(particle: Point, node: Point, a: Point, b: Point) -> Option<Crossing> {
+    let particle_side = sign(orientation(a, b, particle));
+    let node_side = sign(orientation(a, b, node));
+    // The particle on the crack counts as above; both on the crack's line: no crossing.
+    let side = match (particle_side, node_side) {
+        (1, ..=0) | (0, -1) => Side::Above,
+        (-1, 0..) => Side::Below,
+        _ => return None,
+    };
+    // Mirror "below" onto "above".
+    let mirror = if side == Side::Above { 1 } else { -1 };
+    let at_a = mirror * sign(orientation(particle, node, a));
+    let at_b = mirror * sign(orientation(particle, node, b));
+    let at_node = node_side == 0;
+    let crosses = match (at_a, at_b) {
+        (-1, 1) | (-1, 0) => true,
+        (0, 1) => at_node,
+        _ => false,
+    };
+    crosses.then_some(Crossing { side, at_node })
+}
+
+/// The net crossing of a line with the segments of one crack: an even number of crossings cancels.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct NetCrossing {
+    balance: i32,
+    at_node: Option<Side>,
+}
+
+impl NetCrossing {
+    /// Counts one more crossing.
+    pub(crate) fn add(&mut self, crossing: Crossing) {
+        if crossing.at_node {
+            self.at_node.get_or_insert(crossing.side);
+        } else {
+            self.balance += crossing.side.sign() as i32;
+        }
+    }
+
+    /// The side of the crack the particle is on as seen from the node; none: the same side.
+    pub(crate) fn side(&self) -> Option<Side> {
+        let total = self.balance + self.at_node.map_or(0, |s| s.sign() as i32);
+        match total {
+            0 => None,
+            1.. => Some(Side::Above),
+            _ => Some(Side::Below),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(x: f64, y: f64) -> Point {
+        Point::new(x, y)
+    }
+
+    /// Signs of the four areas for a segment a → b on the x axis.
+    fn signs(p: Point, n: Point, a: Point, b: Point) -> [i8; 4] {
+        [sign(orientation(p, n, a)), sign(orientation(p, n, b)), sign(orientation(a, b, p)), sign(orientation(a, b, n))]
+    }
+
+    #[test]
+    fn every_row_of_the_sign_table() {
+        let (a, b) = (point(0.0, 0.0), point(1.0, 0.0));
+        let above = |at_node| Some(Crossing { side: Side::Above, at_node });
+        let below = |at_node| Some(Crossing { side: Side::Below, at_node });
+        let cases = [
+            (point(0.5, 1.0), point(0.5, -1.0), [-1, 1, 1, -1], above(false)),
+            (point(0.5, 1.0), point(0.5, 0.0), [-1, 1, 1, 0], above(true)),
+            (point(0.5, 1.0), point(0.0, 0.0), [0, 1, 1, 0], above(true)),
+            (point(0.5, 1.0), point(1.0, 0.0), [-1, 0, 1, 0], above(true)),
+            (point(0.5, -1.0), point(0.5, 1.0), [1, -1, -1, 1], below(false)),
+            (point(0.5, -1.0), point(0.5, 0.0), [1, -1, -1, 0], below(true)),
+            (point(0.5, -1.0), point(0.0, 0.0), [0, -1, -1, 0], below(true)),
+            (point(0.5, -1.0), point(1.0, 0.0), [1, 0, -1, 0], below(true)),
+            // Through b: crosses; through a: does not.
+            (point(1.0, 1.0), point(1.0, -1.0), [-1, 0, 1, -1], above(false)),
+            (point(1.0, -1.0), point(1.0, 1.0), [1, 0, -1, 1], below(false)),
+            (point(0.0, 1.0), point(0.0, -1.0), [0, 1, 1, -1], None),
+            (point(0.0, -1.0), point(0.0, 1.0), [0, -1, -1, 1], None),
+            // The particle on the crack counts as above.
+            (point(0.5, 0.0), point(0.5, -1.0), [-1, 1, 0, -1], above(false)),
+            (point(0.5, 0.0), point(0.5, 1.0), [1, -1, 0, 1], None),
+            // Misses: beside the segment, before it, along it.
+            (point(1.5, 1.0), point(1.5, -1.0), [-1, -1, 1, -1], None),
+            (point(0.5, 2.0), point(0.5, 1.0), [-1, 1, 1, 1], None),
+            (point(-1.0, 0.0), point(2.0, 0.0), [0, 0, 0, 0], None),
+        ];
+        for (particle, node, expected_signs, expected) in cases {
+            assert_eq!(signs(particle, node, a, b), expected_signs, "signs at {particle} {node}");
+            assert_eq!(crossing(particle, node, a, b), expected, "crossing at {particle} {node}");
+        }
+    }
+
+    fn net(particle: Point, node: Point, line: &[Point]) -> Option<Side> {
+        let mut net = NetCrossing::default();
+        for w in line.windows(2) {
+            if let Some(c) = crossing(particle, node, w[0], w[1]) {
+                net.add(c);
+            }
+        }
+        net.side()
+    }
+
+    #[test]
+    fn a_line_through_a_shared_vertex_crosses_once_and_a_touched_corner_never() {
+        let bend = [point(-1.0, 0.0), point(0.0, 0.0), point(1.0, 0.5)];
+        assert_eq!(net(point(0.0, 1.0), point(0.0, -1.0), &bend), Some(Side::Above));
+        assert_eq!(net(point(0.0, -1.0), point(0.0, 1.0), &bend), Some(Side::Below));
+        // The node is the shared vertex itself.
+        assert_eq!(net(point(0.0, 1.0), point(0.0, 0.0), &bend), Some(Side::Above));
+        assert_eq!(net(point(0.0, -1.0), point(0.0, 0.0), &bend), Some(Side::Below));
+        let corner = [point(-1.0, -1.0), point(0.0, 0.0), point(1.0, -1.0)];
+        assert_eq!(net(point(-1.0, 0.0), point(1.0, 0.0), &corner), None);
+        // In at one leg, out at the other.
+        assert_eq!(net(point(-1.0, -0.5), point(1.0, -0.5), &corner), None);
+    }
+
+    #[test]
+    fn a_hair_beside_the_crack_is_still_decided() {
+        let (a, b) = (point(0.1, 0.1), point(0.7, 0.7));
+        let hair = 0.4_f64;
+        let next = f64::from_bits(hair.to_bits() + 1);
+        assert_eq!(crossing(point(hair, next), point(0.6, 0.1), a, b).map(|c| c.side), Some(Side::Above));
+        assert_eq!(crossing(point(next, hair), point(0.6, 0.1), a, b), None);
+    }
+}

@@ -1,0 +1,285 @@
+//! Which velocity field serves a pair of a particle and a node, and with what share.
+//!
+//! The field of a pair is named by what the straight line between them crosses: nothing → the node's own field; otherwise the set of
+//! (crack, side) it crosses (Nairn 2003, generalised from one crack to any number).
+//!
+//! **At a tip** a hard line-crossing test makes the crack act as if it ended at a node: the effective length jumps as the tip moves. With
+//! [`TipDivision::PartlyCut`] the pair is split by the particle's own position instead: the crack is thought to go on straight ahead
+//! of the tip, and a pair on opposite sides gives the share b to the far field and 1 − b to the node's own, where b is the
+//! fraction of the particle's domain (one particle spacing wide) that lies behind the tip. A node more than a quarter of a cell ahead
+//! of the tip is never split. Gradients follow the product rule, ∇(b w) = b ∇w + w ∇b. The jump then ends at the tip.
+
+use crate::crossing::{NetCrossing, Side, crossing};
+use fissure_scene::{Point, TipDivision, Vector};
+use std::collections::HashMap;
+
+/// What a line crosses: sorted (crack, side of the particle); empty: nothing.
+pub(crate) type CrossedSet = Vec<(u32, Side)>;
+
+/// How far behind the tip, in cells, the crack counts as divided by particle position.
+const WINDOW: f64 = 2.0;
+/// A node farther ahead of the tip than this, in cells, is never split.
+const NODE_AHEAD: f64 = 0.25;
+
+/// One end of a crack line, for the division.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum LineEnd {
+    /// A tip inside the material.
+    Tip,
+    /// Open: at a ring of the body or on another crack. The line goes on for so far beyond it [m], so that
+    /// lines to nodes outside the body are cut as well.
+    Open(f64),
+    /// On another crack. The line goes on for so far beyond it [m], for pairs only that cross the other crack as well: material on
+    /// the far side of the other crack stays whole, but the fields of the two corners on this side stay apart.
+    Junction {
+        /// The crack it ends on.
+        crack: u32,
+        /// Length of the continuation [m].
+        beyond: f64,
+    },
+}
+
+/// A crack as the division sees it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct CrackLine {
+    /// Index of the crack.
+    pub(crate) crack: u32,
+    /// Points from start to end [m], in the configuration in which particles and nodes are given.
+    pub(crate) points: Vec<Point>,
+    /// First point.
+    pub(crate) start: LineEnd,
+    /// Last point.
+    pub(crate) end: LineEnd,
+}
+
+/// A pair's share in one field.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Share {
+    /// The field.
+    pub(crate) crossed: CrossedSet,
+    /// Fraction of the weight, 0 to 1.
+    pub(crate) fraction: f64,
+    /// ∇ of the fraction with respect to the particle's position [1/m].
+    pub(crate) gradient: Vector,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Tip {
+    position: Point,
+    ahead: Vector,
+}
+
+#[derive(Debug, Clone)]
+struct Line {
+    crack: u32,
+    segments: Vec<(Point, Point)>,
+    tips: Vec<Tip>,
+    kinds: Vec<SegmentKind>,
+}
+
+/// What a segment of a prepared line stands for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum SegmentKind {
+    /// The crack itself, or its continuation outside the body.
+    Real,
+    /// Drawn ahead of a tip for [`TipDivision::PartlyCut`]; not a crack by itself.
+    AheadOfTip,
+    /// Continuation beyond a junction with the crack named; counts for pairs that cross that one.
+    BeyondJunction(u32),
+}
+
+/// The cracks of a scene, ready to divide pairs.
+#[derive(Debug, Clone)]
+pub(crate) struct Division {
+    lines: Vec<Line>,
+    cell_size: f64,
+    particle_spacing: f64,
+    buckets: HashMap<(i64, i64), Vec<(u32, u32)>>,
+}
+
+impl Division {
+    /// Prepares `lines` for pairs that lie at most `reach` cells apart along each axis.
+    pub(crate) fn new(
+        lines: &[CrackLine],
+        tip_division: TipDivision,
+        cell_size: f64,
+        particle_spacing: f64,
+        reach: f64,
+    ) -> Self {
+        let lines: Vec<Line> = lines.iter().map(|l| prepare(l, tip_division, cell_size)).collect();
+        let mut buckets: HashMap<(i64, i64), Vec<(u32, u32)>> = HashMap::new();
+        for (line_index, line) in lines.iter().enumerate() {
+            for (segment_index, &(a, b)) in line.segments.iter().enumerate() {
+                let low = a.inf(&b).coords / cell_size - Vector::repeat(reach);
+                let high = a.sup(&b).coords / cell_size + Vector::repeat(reach);
+                for j in low.y.floor() as i64..=high.y.floor() as i64 {
+                    for i in low.x.floor() as i64..=high.x.floor() as i64 {
+                        buckets.entry((i, j)).or_default().push((line_index as u32, segment_index as u32));
+                    }
+                }
+            }
+        }
+        Self { lines, cell_size, particle_spacing, buckets }
+    }
+
+    fn bucket(&self, point: Point) -> &[(u32, u32)] {
+        let key = ((point.x / self.cell_size).floor() as i64, (point.y / self.cell_size).floor() as i64);
+        self.buckets.get(&key).map_or(&[], Vec::as_slice)
+    }
+
+    /// Whether a particle at `point` may have a divided pair at all.
+    pub(crate) fn is_near(&self, point: Point) -> bool {
+        !self.bucket(point).is_empty()
+    }
+
+    /// What the line from `particle` to `node` crosses.
+    pub(crate) fn crossed(&self, particle: Point, node: Point) -> CrossedSet {
+        self.shares(particle, node, 0.0)
+            .into_iter()
+            .max_by(|a, b| a.fraction.total_cmp(&b.fraction))
+            .map_or(Vec::new(), |s| s.crossed)
+    }
+
+    /// The shares of the pair (`particle`, `node`) in the fields of the node; fractions add up to 1. Never empty.
+    pub(crate) fn pair(&self, particle: Point, node: Point) -> Vec<Share> {
+        self.shares(particle, node, self.particle_spacing)
+    }
+
+    fn shares(&self, particle: Point, node: Point, domain: f64) -> Vec<Share> {
+        let mut shares = vec![Share { crossed: Vec::new(), fraction: 1.0, gradient: Vector::zeros() }];
+        let bucket = self.bucket(particle);
+        // Continuations beyond a junction need to know what else is crossed, so they come in a second round.
+        let mut crossed_whole: Vec<u32> = Vec::new();
+        for round in 0..2 {
+            let mut rest = bucket;
+            while let Some(&(line_index, _)) = rest.first() {
+                let (segments, others) = rest.split_at(rest.iter().take_while(|s| s.0 == line_index).count());
+                rest = others;
+                let line = &self.lines[line_index as usize];
+                if (round == 1) != line.has_junction() {
+                    continue;
+                }
+                let Some(cut) = divide(line, segments, particle, node, self.cell_size, domain, &crossed_whole) else {
+                    continue;
+                };
+                crossed_whole.push(line.crack);
+                shares = split(shares, line.crack, cut);
+            }
+        }
+        shares
+    }
+}
+
+/// Splits every share by one more crack.
+fn split(shares: Vec<Share>, crack: u32, cut: Cut) -> Vec<Share> {
+    let mut result = Vec::with_capacity(2 * shares.len());
+    for share in shares {
+        let mut far = share.clone();
+        far.crossed.push((crack, cut.side));
+        far.crossed.sort_unstable();
+        far.gradient = share.gradient * cut.fraction + cut.gradient * share.fraction;
+        far.fraction *= cut.fraction;
+        if cut.fraction < 1.0 {
+            let gradient = share.gradient * (1.0 - cut.fraction) - cut.gradient * share.fraction;
+            result.push(Share { fraction: share.fraction * (1.0 - cut.fraction), gradient, ..share });
+        }
+        result.push(far);
+    }
+    result
+}
+
+impl Line {
+    fn has_junction(&self) -> bool {
+        self.kinds.iter().any(|k| matches!(k, SegmentKind::BeyondJunction(_)))
+    }
+}
+
+fn prepare(line: &CrackLine, tip_division: TipDivision, cell_size: f64) -> Line {
+    let p = &line.points;
+    let n = p.len();
+    let ahead_of_end = (p[n - 1] - p[n - 2]).normalize();
+    let ahead_of_start = (p[0] - p[1]).normalize();
+    let mut segments: Vec<(Point, Point)> = p.windows(2).map(|w| (w[0], w[1])).collect();
+    let mut kinds = vec![SegmentKind::Real; segments.len()];
+    let mut tips = Vec::new();
+    let mut carry_on = |end: LineEnd, from: Point, ahead: Vector| {
+        let (length, kind) = match end {
+            LineEnd::Open(beyond) => (beyond, SegmentKind::Real),
+            LineEnd::Junction { crack, beyond } => (beyond, SegmentKind::BeyondJunction(crack)),
+            LineEnd::Tip if tip_division == TipDivision::PartlyCut => {
+                tips.push(Tip { position: from, ahead });
+                ((WINDOW + 2.0) * cell_size, SegmentKind::AheadOfTip)
+            }
+            LineEnd::Tip => return None,
+        };
+        (length > 0.0).then(|| {
+            kinds.push(kind);
+            from + ahead * length
+        })
+    };
+    // All segments run from the start to the end of the crack, so that a line through a vertex is crossed just once.
+    if let Some(point) = carry_on(line.end, p[n - 1], ahead_of_end) {
+        segments.push((p[n - 1], point));
+    }
+    if let Some(point) = carry_on(line.start, p[0], ahead_of_start) {
+        segments.push((point, p[0]));
+    }
+    Line { crack: line.crack, segments, tips, kinds }
+}
+
+/// How one crack divides a pair.
+#[derive(Debug, Clone, Copy)]
+struct Cut {
+    /// Side of the crack the particle is on.
+    side: Side,
+    /// Share of the far field, above 0 and up to 1.
+    fraction: f64,
+    /// ∇ of the fraction [1/m].
+    gradient: Vector,
+}
+
+/// How `line` divides a pair; none when the pair is whole. `crossed` are the other cracks that the pair crosses.
+fn divide(
+    line: &Line,
+    segments: &[(u32, u32)],
+    particle: Point,
+    node: Point,
+    cell_size: f64,
+    domain: f64,
+    crossed: &[u32],
+) -> Option<Cut> {
+    let mut net = NetCrossing::default();
+    let mut crosses_real = false;
+    for &(_, segment) in segments {
+        let kind = line.kinds[segment as usize];
+        if let SegmentKind::BeyondJunction(other) = kind
+            && !crossed.contains(&other)
+        {
+            continue;
+        }
+        let (a, b) = line.segments[segment as usize];
+        if let Some(found) = crossing(particle, node, a, b) {
+            net.add(found);
+            crosses_real |= kind != SegmentKind::AheadOfTip;
+        }
+    }
+    let side = net.side()?;
+    for tip in &line.tips {
+        let behind = -(particle - tip.position).dot(&tip.ahead);
+        let beside = (particle - tip.position).perp(&tip.ahead).abs();
+        if behind > WINDOW * cell_size || beside > WINDOW * cell_size {
+            continue;
+        }
+        if (node - tip.position).dot(&tip.ahead) > NODE_AHEAD * cell_size {
+            return None;
+        }
+        // Fraction of [ξ − s/2, ξ + s/2] that lies behind the tip.
+        let fraction = if domain > 0.0 { (0.5 + behind / domain).clamp(0.0, 1.0) } else { f64::from(behind >= 0.0) };
+        if fraction == 0.0 {
+            return None;
+        }
+        let gradient = if fraction < 1.0 { -tip.ahead / domain } else { Vector::zeros() };
+        return Some(Cut { side, fraction, gradient });
+    }
+    crosses_real.then_some(Cut { side, fraction: 1.0, gradient: Vector::zeros() })
+}

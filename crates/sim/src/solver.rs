@@ -1,0 +1,100 @@
+//! What the two formulations have in common: the questions the rest of the crate asks a solver.
+
+use crate::SimulationError;
+use crate::crack::Crack;
+use crate::crossing::Side;
+use fissure_scene::{CrackFrame, End, Matrix, OutlineFrame, ParticleFrame, Point, Vector};
+
+/// The state of the material around a crack tip, in the tip frame: origin at the tip, e1 ahead of it, e2 = e1 turned by +90°.
+///
+/// Total Lagrangian: everything in the reference configuration, the rigid turn of the tip taken off. Updated Lagrangian: the current one.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct TipZone {
+    /// Quadrature points.
+    pub(crate) points: Vec<QuadraturePoint>,
+    /// Opening (x_left − x_right) in the tip frame, taken behind the tip: (sliding, opening) [m]. Left is the +e2 side.
+    pub(crate) opening: Vector,
+    /// Distance behind the tip at which the opening was taken [m].
+    pub(crate) opening_distance: f64,
+}
+
+/// One particle near a tip. Vectors and tensors in the tip frame.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct QuadraturePoint {
+    /// Place (ξ, η) [m].
+    pub(crate) place: Vector,
+    /// Face of the crack the point sees behind the tip: `Above` is the +e2 side *of the tip frame*. Decided by the crack line, not by the sign of η.
+    pub(crate) side: Side,
+    /// Volume per unit thickness in the configuration of `place` [m²].
+    pub(crate) volume: f64,
+    /// First Piola (total) or Cauchy (updated) stress [Pa].
+    pub(crate) stress: Matrix,
+    /// Displacement gradient u_i,j with respect to `place` [–].
+    pub(crate) gradient: Matrix,
+    /// Strain energy per volume [J/m³].
+    pub(crate) energy: f64,
+    /// Density [kg/m³].
+    pub(crate) density: f64,
+    /// Velocity [m/s].
+    pub(crate) velocity: Vector,
+    /// Acceleration [m/s²].
+    pub(crate) acceleration: Vector,
+    /// Material.
+    pub(crate) material: u32,
+}
+
+/// Energies that only the solver knows, per unit thickness [J/m].
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct SolverEnergies {
+    pub(crate) kinetic: f64,
+    pub(crate) strain: f64,
+    pub(crate) external_work: f64,
+}
+
+/// A formulation of the solver.
+pub(crate) trait Solver: std::fmt::Debug + Send {
+    /// Largest stable time step for the present state [s].
+    fn stable_time_step(&self) -> f64;
+
+    /// Goes from `time` to `time` + `time_step`. `observe` is called in mid-step, when displacements, velocities and accelerations belong to one moment.
+    ///
+    /// # Errors
+    /// When the state is no longer finite or leaves the range of the formulation.
+    fn step(
+        &mut self,
+        cracks: &[Crack],
+        time: f64,
+        time_step: f64,
+        observe: &mut dyn FnMut(&dyn Observed),
+    ) -> Result<(), SimulationError>;
+
+    /// Takes up the cracks as they are now: `changed` (crack, end) have got new points at rest since the last call, or new ends.
+    fn recut(&mut self, cracks: &[Crack], changed: &[(usize, End)]);
+
+    /// The solver as one that can be observed between steps.
+    fn observed(&self) -> &dyn Observed;
+
+    /// Energies now.
+    fn energies(&self) -> SolverEnergies;
+
+    /// The particles as a frame holds them (pieces left 0).
+    fn particle_frame(&self) -> ParticleFrame;
+
+    /// The rings of all bodies.
+    fn outline_frames(&self) -> Vec<OutlineFrame>;
+
+    /// The cracks with both faces.
+    fn crack_frames(&self, cracks: &[Crack]) -> Vec<CrackFrame>;
+
+    /// The whole state, for going on later.
+    fn save(&self) -> Vec<u8>;
+}
+
+/// A moment of a solver that can be looked at.
+pub(crate) trait Observed {
+    /// The material within `radius` [m] of a tip.
+    fn tip_zone(&self, cracks: &[Crack], crack: usize, end: End, radius: f64) -> TipZone;
+
+    /// Current position of a tip [m] and the current direction ahead of it (unit vector).
+    fn tip_now(&self, cracks: &[Crack], crack: usize, end: End) -> (Point, Vector);
+}

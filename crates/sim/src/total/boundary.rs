@@ -1,0 +1,279 @@
+//! Loads, supports, colliders, gravity, and the first velocities, as they act on fields.
+
+use super::Total;
+use super::cut::Probe;
+use crate::SimulationError;
+use crate::particles::{EdgeLine, selects};
+use fissure_scene::{LoadKind, Point, Selection, Vector};
+
+/// A force at a place of the material.
+#[derive(Debug, Clone)]
+pub(super) struct PointForce {
+    probe: Probe,
+    /// At a curve factor of 1 [N/m].
+    force: Vector,
+}
+
+/// A prescribed velocity of one field.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Constraint {
+    field: u32,
+    support: u32,
+}
+
+/// A field at the surface of a body, which a collider can touch.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SurfaceNode {
+    field: u32,
+    /// How far the material goes beyond the node towards an obstacle [m]; negative when it ends before it.
+    reach: f64,
+}
+
+impl Total {
+    /// The forces of each load.
+    pub(super) fn point_forces(&self) -> Result<Vec<Vec<PointForce>>, SimulationError> {
+        let mut loads = Vec::new();
+        for (index, load) in self.scene.loads.iter().enumerate() {
+            let empty = || SimulationError::EmptySelection { what: format!("load {}", index + 1) };
+            let forces = match &load.kind {
+                LoadKind::Force(total) => {
+                    let selected = self.particles.select(&self.scene, &load.selection);
+                    let volume: f64 = selected.iter().map(|&p| self.particles.volume[p as usize]).sum();
+                    selected
+                        .iter()
+                        .map(|&p| {
+                            let place = self.particles.rest[p as usize];
+                            PointForce {
+                                probe: self.probe(place, place),
+                                force: total * (self.particles.volume[p as usize] / volume),
+                            }
+                        })
+                        .collect()
+                }
+                LoadKind::Traction(traction) => self.traction_forces(&load.selection, *traction),
+                LoadKind::PerPoint(values) => values
+                    .iter()
+                    .map(|&(place, force)| {
+                        let nearest = self.nearest_particle(place);
+                        PointForce { probe: self.probe(nearest, nearest), force }
+                    })
+                    .collect::<Vec<_>>(),
+            };
+            if forces.is_empty() {
+                return Err(empty());
+            }
+            loads.push(forces);
+        }
+        Ok(loads)
+    }
+
+    fn nearest_particle(&self, place: Point) -> Point {
+        let mut nearest = self.particles.rest[0];
+        for &p in &self.particles.rest {
+            if (p - place).norm_squared() < (nearest - place).norm_squared() {
+                nearest = p;
+            }
+        }
+        nearest
+    }
+
+    /// A traction on a side of the box: on the parts of the rings that lie on that side, by the length between neighbouring places.
+    fn traction_forces(&self, selection: &Selection, traction: Vector) -> Vec<PointForce> {
+        let mut forces = Vec::new();
+        for (index, body) in self.scene.bodies.iter().enumerate() {
+            for ring in body.region.rings() {
+                for i in 0..ring.len() {
+                    let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
+                    if !self.edge_selected(selection, index, a, b) {
+                        continue;
+                    }
+                    // One place in the middle of each half cell, so that every node gets the load of its hat.
+                    let pieces = ((b - a).norm() / self.particles.spacing).round().max(1.0) as usize;
+                    for k in 0..pieces {
+                        let place = a + (b - a) * ((k as f64 + 0.5) / pieces as f64);
+                        forces.push(PointForce {
+                            probe: self.probe(place, place),
+                            force: traction * ((b - a).norm() / pieces as f64),
+                        });
+                    }
+                }
+            }
+        }
+        forces
+    }
+
+    fn edge_selected(&self, selection: &Selection, body: usize, a: Point, b: Point) -> bool {
+        let slack = 1e-6 * self.grid.cell_size;
+        match selection {
+            Selection::Edge { side, body: of } => {
+                let line = EdgeLine::of(&self.scene, *side, *of);
+                of.is_none_or(|o| o == body) && line.depth(a).abs() <= slack && line.depth(b).abs() <= slack
+            }
+            _ => [a, b, nalgebra::center(&a, &b)].iter().all(|&p| selects(&self.scene, selection, p, body, slack)),
+        }
+    }
+
+    /// Adds the loads for the time `time` to the forces and counts their work over a step.
+    pub(super) fn apply_loads(&mut self, time: f64, time_step: f64) {
+        let mut power = 0.0;
+        for (load, forces) in self.scene.loads.iter().zip(&self.loads) {
+            let factor = load.curve.value(time);
+            if factor == 0.0 {
+                continue;
+            }
+            for point in forces {
+                let f = point.force * factor;
+                power += f.dot(&point.probe.value(&self.state.velocity));
+                for &(field, w) in &point.probe.entries {
+                    self.force[0][field as usize] += f.x * w;
+                    self.force[1][field as usize] += f.y * w;
+                }
+            }
+        }
+        self.state.external_work += power * time_step;
+    }
+
+    /// Counts the work of gravity over a step.
+    pub(super) fn count_gravity_work(&mut self, time_step: f64) {
+        let g = self.scene.gravity;
+        if g == Vector::zeros() {
+            return;
+        }
+        let v = &self.state.velocity;
+        let power: f64 = self.state.mass.iter().enumerate().map(|(d, m)| m * (g.x * v[0][d] + g.y * v[1][d])).sum();
+        self.state.external_work += power * time_step;
+    }
+
+    /// The fields each support holds.
+    pub(super) fn constraints_of_supports(&self) -> Result<Vec<Constraint>, SimulationError> {
+        let mut constraints = Vec::new();
+        let bodies = self.body_of_fields();
+        for (support, s) in self.scene.supports.iter().enumerate() {
+            let before = constraints.len();
+            for field in 0..self.state.mass.len() {
+                if self.state.mass[field] == 0.0 {
+                    continue;
+                }
+                let place = self.grid.position(self.state.fields.node(field));
+                let slack = match s.selection {
+                    // Nodes on the side and, where the side is not on a grid line, those beyond it or nearer than half a cell.
+                    Selection::Edge { .. } => 0.499 * self.grid.cell_size,
+                    _ => 0.0,
+                };
+                if selects(&self.scene, &s.selection, place, bodies[field] as usize, slack) {
+                    constraints.push(Constraint { field: field as u32, support: support as u32 });
+                }
+            }
+            if constraints.len() == before {
+                return Err(SimulationError::EmptySelection { what: format!("support {}", support + 1) });
+            }
+        }
+        Ok(constraints)
+    }
+
+    fn body_of_fields(&self) -> Vec<u32> {
+        let mut bodies = vec![0; self.state.mass.len()];
+        if self.scene.bodies.len() > 1 {
+            for p in 0..self.particles.len() {
+                self.for_each_entry(p, |field, _, _| bodies[field] = self.particles.body[p]);
+            }
+        }
+        bodies
+    }
+
+    /// Fields whose node is not surrounded by material of their own.
+    pub(super) fn surface_nodes(&self) -> Vec<SurfaceNode> {
+        if self.colliders.is_empty() {
+            return Vec::new();
+        }
+        let h = self.grid.cell_size;
+        let mut volume = vec![0.0; self.state.mass.len()];
+        for p in 0..self.particles.len() {
+            self.for_each_entry(p, |field, w, _| volume[field] += self.particles.volume[p] * w);
+        }
+        let mut surface = Vec::new();
+        for (field, v) in volume.iter().enumerate() {
+            let part = v / (h * h);
+            if part <= 0.0 || part > 0.999 {
+                continue;
+            }
+            // A half-plane of material whose edge lies d beyond the node fills the part ½ + d/h ∓ ½ (d/h)² of the node's hat; solved for d.
+            let beyond = |x: f64| h * (1.0 - (1.0 - x).max(0.0).sqrt());
+            let reach = if part >= 0.5 { beyond(2.0 * part - 1.0) } else { -beyond(1.0 - 2.0 * part) };
+            surface.push(SurfaceNode { field: field as u32, reach });
+        }
+        surface
+    }
+
+    /// Prescribed velocities and obstacles; counts the work of both.
+    pub(super) fn apply_constraints_and_colliders(&mut self, time: f64, time_step: f64) {
+        let middle = time + 0.5 * time_step;
+        let mut work = 0.0;
+        for c in &self.constraints {
+            let support = &self.scene.supports[c.support as usize];
+            let factor = support.curve.value(middle);
+            let d = c.field as usize;
+            for axis in 0..2 {
+                let Some(speed) = support.velocity[axis] else { continue };
+                let before = self.state.velocity[axis][d];
+                let after = speed * factor;
+                // The force m (v' − v)/Δt acts along the prescribed motion.
+                work += self.state.mass[d] * (after - before) * after;
+                self.state.velocity[axis][d] = after;
+            }
+        }
+        for collider in &self.colliders {
+            let placed = collider.at(middle);
+            for node in &self.surface {
+                let d = node.field as usize;
+                let u = &self.state.displacement;
+                let place = self.grid.position(self.state.fields.node(d)) + Vector::new(u[0][d], u[1][d]);
+                let found = placed.surface(place);
+                if found.distance > node.reach {
+                    continue;
+                }
+                let before = Vector::new(self.state.velocity[0][d], self.state.velocity[1][d]);
+                // Where the material itself ends, which is what touches.
+                let skin = place - found.normal * node.reach;
+                let after = placed.resolve(before, skin);
+                let impulse = (after - before) * self.state.mass[d];
+                work += impulse.dot(&placed.velocity(place));
+                self.state.velocity[0][d] = after.x;
+                self.state.velocity[1][d] = after.y;
+            }
+        }
+        self.state.external_work += work;
+    }
+
+    /// Velocities at time zero, from those of the particles.
+    pub(super) fn set_initial_velocities(&mut self) {
+        let mut momentum = [vec![0.0; self.state.mass.len()], vec![0.0; self.state.mass.len()]];
+        let mut any = false;
+        for p in 0..self.particles.len() {
+            let body = self.particles.body[p] as usize;
+            let place = self.particles.rest[p];
+            let mut v = Vector::zeros();
+            for part in &self.scene.bodies[body].velocities {
+                if selects(&self.scene, &part.selection, place, body, 0.0) {
+                    let arm = place - part.center;
+                    v += part.velocity + Vector::new(-arm.y, arm.x) * part.angular_velocity;
+                }
+            }
+            if v != Vector::zeros() {
+                any = true;
+                let m = self.particles.mass[p];
+                self.for_each_entry(p, |field, w, _| {
+                    momentum[0][field] += m * w * v.x;
+                    momentum[1][field] += m * w * v.y;
+                });
+            }
+        }
+        if any {
+            for axis in 0..2 {
+                for (d, &m) in self.state.mass.iter().enumerate() {
+                    self.state.velocity[axis][d] = if m > 0.0 { momentum[axis][d] / m } else { 0.0 };
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! Contact between the two faces of a crack, at nodes that have fields on both sides of it.
+//!
+//! Nairn 2003, Guo & Nairn 2006 (thesis eq. 7–10): only if the fields approach, (v_a − v_b)·n < 0, *and* overlap, (u_a − u_b)·n < 0, with n from
+//! below to above; then both get the normal velocity of their centre of mass. Friction after Coulomb: the tangential impulse is
+//! at most μ times the normal one; an infinite μ sticks.
+
+use super::Total;
+use crate::crack::Crack;
+use crate::crossing::Side;
+use fissure_scene::Vector;
+
+/// Two fields of one node on the two sides of one crack.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ContactPair {
+    above: u32,
+    below: u32,
+    crack: u32,
+    /// Segment of the crack nearest to the node.
+    segment: u32,
+}
+
+impl Total {
+    /// All pairs of fields that face each other across one crack.
+    pub(super) fn contact_pairs(&self, cracks: &[Crack]) -> Vec<ContactPair> {
+        let mut pairs = Vec::new();
+        for (node, further) in self.state.fields.divided_nodes() {
+            let own = (Vec::new(), node as u32);
+            let all: Vec<_> =
+                std::iter::once(&own).chain(further).filter(|f| self.state.mass[f.1 as usize] > 0.0).collect();
+            for (k, first) in all.iter().enumerate() {
+                for second in &all[k + 1..] {
+                    let Some((crack, side)) = facing(&first.0, &second.0) else { continue };
+                    let (above, below) = if side == Side::Above { (first.1, second.1) } else { (second.1, first.1) };
+                    let Some(line) = cracks.get(crack as usize) else { continue };
+                    let place = self.grid.position(node);
+                    let segment = (0..line.points.len() - 1)
+                        .map(|s| (crate::particles::distance_to_segment(place, line.points[s], line.points[s + 1]), s))
+                        .min_by(|a, b| a.0.total_cmp(&b.0))
+                        .map_or(0, |x| x.1);
+                    pairs.push(ContactPair { above, below, crack, segment: segment as u32 });
+                }
+            }
+        }
+        pairs
+    }
+
+    /// Current normal of a crack segment, from below to above: across the mean of the two faces.
+    fn segment_normal(&self, crack: u32, segment: u32) -> Option<Vector> {
+        let [above, below] = &self.state.faces[crack as usize];
+        let s = segment as usize;
+        let (from, to) = (above.get(s)?, above.get(s + 1)?);
+        let u = &self.state.displacement;
+        let mean = |k: usize| (above[k].value(u) + below[k].value(u)) * 0.5;
+        let tangent = (to.rest - from.rest) + (mean(s + 1) - mean(s));
+        let length = tangent.norm();
+        (length > 0.0).then(|| Vector::new(-tangent.y, tangent.x) / length)
+    }
+
+    /// Applies contact to all pairs.
+    pub(super) fn resolve_crack_contact(&mut self) {
+        let pairs = std::mem::take(&mut self.contacts);
+        let friction = self.settings.crack_friction;
+        for pair in &pairs {
+            let (a, b) = (pair.above as usize, pair.below as usize);
+            let (u, v) = (&self.state.displacement, &self.state.velocity);
+            let gap = Vector::new(u[0][a] - u[0][b], u[1][a] - u[1][b]);
+            let speed = Vector::new(v[0][a] - v[0][b], v[1][a] - v[1][b]);
+            if gap == Vector::zeros() && speed == Vector::zeros() {
+                continue;
+            }
+            let Some(n) = self.segment_normal(pair.crack, pair.segment) else { continue };
+            let approach = speed.dot(&n);
+            if approach >= 0.0 || gap.dot(&n) >= 0.0 {
+                continue;
+            }
+            let (mass_a, mass_b) = (self.state.mass[a], self.state.mass[b]);
+            let reduced = mass_a * mass_b / (mass_a + mass_b);
+            let sliding = speed - n * approach;
+            let sliding_speed = sliding.norm();
+            let mut impulse = n * (-approach * reduced);
+            if friction > 0.0 && sliding_speed > 0.0 {
+                let most = friction * -approach;
+                impulse -= sliding * (reduced * (most / sliding_speed).min(1.0));
+            }
+            for axis in 0..2 {
+                self.state.velocity[axis][a] += impulse[axis] / mass_a;
+                self.state.velocity[axis][b] -= impulse[axis] / mass_b;
+            }
+        }
+        self.contacts = pairs;
+    }
+}
+
+/// The crack across which two fields face each other, and the side of the first; none when they differ by more than one crack.
+fn facing(first: &[(u32, Side)], second: &[(u32, Side)]) -> Option<(u32, Side)> {
+    let only_first: Vec<_> = first.iter().filter(|x| !second.contains(x)).collect();
+    let only_second: Vec<_> = second.iter().filter(|x| !first.contains(x)).collect();
+    match (only_first.as_slice(), only_second.as_slice()) {
+        ([x], []) => Some(**x),
+        ([], [y]) => Some((y.0, y.1.opposite())),
+        ([x], [y]) if x.0 == y.0 => Some(**x),
+        _ => None,
+    }
+}

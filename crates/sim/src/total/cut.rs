@@ -1,0 +1,368 @@
+//! The general path: particles with a stencil of their own, and probes that ride on the material.
+
+use super::{FieldVectors, NONE, Run, Total};
+use crate::crack::Crack;
+use crate::crossing::Side;
+use fissure_scene::{CrackEnd, Matrix, Point, Vector};
+use serde::{Deserialize, Serialize};
+
+/// One (particle, field) pair.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(super) struct Entry {
+    /// Field.
+    pub(super) field: u32,
+    /// Weight times share [–].
+    pub(super) weight: f64,
+    /// Gradient of it [1/m].
+    pub(super) gradient: [f64; 2],
+}
+
+/// Particles with stored stencils, in compressed rows.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct CutParticles {
+    /// Row of each particle, or `NONE`.
+    row: Vec<u32>,
+    /// Particle of each row.
+    particle: Vec<u32>,
+    /// First entry of each row; one more at the end.
+    first: Vec<u32>,
+    /// Entries of all rows.
+    entries: Vec<Entry>,
+}
+
+impl CutParticles {
+    pub(super) fn new(particles: usize) -> Self {
+        Self { row: vec![NONE; particles], particle: Vec::new(), first: vec![0], entries: Vec::new() }
+    }
+
+    /// Entries of a particle, if it is on the general path.
+    pub(super) fn entries_of(&self, particle: usize) -> Option<&[Entry]> {
+        let row = self.row[particle];
+        (row != NONE).then(|| self.row_entries(row as usize))
+    }
+
+    fn row_entries(&self, row: usize) -> &[Entry] {
+        &self.entries[self.first[row] as usize..self.first[row + 1] as usize]
+    }
+
+    /// Puts new stencils in the place of old ones; particles that had none are added.
+    pub(super) fn replace(&mut self, stencils: Vec<(usize, Vec<Entry>)>) {
+        let mut news: Vec<Option<Vec<Entry>>> = vec![None; self.particle.len()];
+        for (particle, entries) in stencils {
+            if self.row[particle] == NONE {
+                self.row[particle] = self.particle.len() as u32;
+                self.particle.push(particle as u32);
+                news.push(Some(entries));
+            } else {
+                news[self.row[particle] as usize] = Some(entries);
+            }
+        }
+        let mut first = Vec::with_capacity(news.len() + 1);
+        let mut all = Vec::with_capacity(self.entries.len() + 64);
+        for (row, new) in news.into_iter().enumerate() {
+            first.push(all.len() as u32);
+            match new {
+                Some(entries) => all.extend(entries),
+                None => all.extend_from_slice(self.row_entries(row)),
+            }
+        }
+        first.push(all.len() as u32);
+        self.first = first;
+        self.entries = all;
+    }
+}
+
+/// A place at rest that rides on the material: a vertex of an outline, a point of a crack face, a place of a load.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Probe {
+    /// Where it is at rest [m].
+    pub(super) rest: Point,
+    /// A hair beside it, on the side of the crack it belongs to [m].
+    pub(super) nudged: Point,
+    /// (field, weight).
+    pub(super) entries: Vec<(u32, f64)>,
+}
+
+impl Probe {
+    /// Value of a field vector at the probe.
+    pub(super) fn value(&self, u: &FieldVectors) -> Vector {
+        let mut value = Vector::zeros();
+        for &(field, w) in &self.entries {
+            value += Vector::new(u[0][field as usize], u[1][field as usize]) * w;
+        }
+        value
+    }
+}
+
+/// How far beside a crack the side of a face point is decided, in cells.
+const NUDGE: f64 = 1e-6;
+
+impl Total {
+    /// Entries of a particle, cut by the cracks as they are; fields that do not exist yet are made.
+    pub(super) fn make_entries(&mut self, particle: usize) -> Vec<Entry> {
+        let place = self.particles.rest[particle];
+        let stencil = self.stencil(place);
+        let near = self.division.is_near(place);
+        let mut entries = Vec::with_capacity(stencil.width * stencil.width);
+        for b in 0..stencil.width {
+            for a in 0..stencil.width {
+                let (w, g) = (stencil.weight(a, b), stencil.weight_gradient(a, b));
+                let node = self.stencil_node(&stencil, a, b);
+                if !near {
+                    entries.push(Entry { field: node as u32, weight: w, gradient: [g.x, g.y] });
+                    continue;
+                }
+                for share in self.division.pair(place, self.grid.position(node)) {
+                    let field = self.state.fields.find_or_add(node, &share.crossed);
+                    let gradient = g * share.fraction + share.gradient * w;
+                    entries.push(Entry {
+                        field: field as u32,
+                        weight: w * share.fraction,
+                        gradient: [gradient.x, gradient.y],
+                    });
+                }
+            }
+        }
+        entries
+    }
+
+    /// Whether all four particles of a cell are there, whole, and of one material; then its material.
+    fn whole_cell(&self, column: usize, row: usize) -> Option<u32> {
+        // Place of the cell's lower left particle on the particle lattice, which starts at a node.
+        let base = (self.grid.origin - self.particles.anchor) / self.particles.spacing;
+        let (i0, j0) = (base.x.round() as i32 + 2 * column as i32, base.y.round() as i32 + 2 * row as i32);
+        let mut material = None;
+        let mut body = None;
+        for (i, j) in [(i0, j0), (i0 + 1, j0), (i0, j0 + 1), (i0 + 1, j0 + 1)] {
+            let p = self.lattice.at(i, j)?;
+            if self.division.is_near(self.particles.rest[p]) {
+                return None;
+            }
+            if *material.get_or_insert(self.particles.material[p]) != self.particles.material[p]
+                || *body.get_or_insert(self.particles.body[p]) != self.particles.body[p]
+            {
+                return None;
+            }
+        }
+        material
+    }
+
+    /// The runs of one row of cells.
+    pub(super) fn runs_of_row(&self, row: usize) -> Vec<Run> {
+        let mut runs: Vec<Run> = Vec::new();
+        if !self.has_rows() {
+            return runs;
+        }
+        for column in 0..self.grid.columns - 1 {
+            let Some(material) = self.whole_cell(column, row) else { continue };
+            match runs.last_mut() {
+                Some(run) if run.material == material && run.first + run.count == column => run.count += 1,
+                _ => runs.push(Run { first: column, count: 1, material }),
+            }
+        }
+        runs
+    }
+
+    /// Particles on the general path in one row of cells: those no run covers.
+    pub(super) fn cut_of_row(&self, row: usize, runs: &[Run]) -> Vec<usize> {
+        let mut covered = vec![false; self.grid.columns];
+        for run in runs {
+            covered[run.first..run.first + run.count].fill(true);
+        }
+        self.particles_of_row(row).filter(|&(column, _)| !covered[column]).map(|(_, p)| p).collect()
+    }
+
+    fn particles_of_row(&self, row: usize) -> impl Iterator<Item = (usize, usize)> {
+        let s = self.particles.spacing / self.grid.cell_size;
+        let base = self.grid.in_cells(self.particles.anchor);
+        let lattice = &self.lattice;
+        let place = move |first: i32, offset: f64, k: i32| (offset + (f64::from(first + k) + 0.5) * s).floor();
+        (0..lattice.rows).filter(move |&k| place(lattice.first[1], base.y, k) as i64 == row as i64).flat_map(move |k| {
+            (0..lattice.columns).filter_map(move |l| {
+                let p = lattice.particle[(k * lattice.columns + l) as usize];
+                let column = place(lattice.first[0], base.x, l) as usize;
+                (p != NONE).then_some((column, p as usize))
+            })
+        })
+    }
+
+    /// Cuts the whole lattice, at rest, and gathers the masses.
+    pub(super) fn cut_all(&mut self) {
+        let mut stencils = Vec::new();
+        for row in 0..self.grid.rows - 1 {
+            let runs = self.runs_of_row(row);
+            for p in self.cut_of_row(row, &runs) {
+                stencils.push(p);
+            }
+            self.state.runs[row] = runs;
+        }
+        let stencils = stencils.into_iter().map(|p| (p, self.make_entries(p))).collect();
+        self.state.cut.replace(stencils);
+        let fields = self.state.fields.len();
+        let mut mass = vec![0.0; fields];
+        for p in 0..self.particles.len() {
+            let m = self.particles.mass[p];
+            self.for_each_entry(p, |field, w, _| mass[field] += m * w);
+        }
+        self.state.mass = mass;
+        for values in self.state.displacement.iter_mut().chain(&mut self.state.velocity) {
+            values.resize(fields, 0.0);
+        }
+    }
+
+    /// Adds the forces of the particles on the general path.
+    pub(super) fn add_cut_forces(&self, u: &FieldVectors, force_x: &mut [f64], force_y: &mut [f64]) {
+        let cut = &self.state.cut;
+        for (row, &particle) in cut.particle.iter().enumerate() {
+            let entries = cut.row_entries(row);
+            let mut h = Matrix::zeros();
+            for e in entries {
+                let (x, y) = (u[0][e.field as usize], u[1][e.field as usize]);
+                h.m11 += x * e.gradient[0];
+                h.m12 += x * e.gradient[1];
+                h.m21 += y * e.gradient[0];
+                h.m22 += y * e.gradient[1];
+            }
+            let p = particle as usize;
+            let elastic = &self.elastic[self.particles.material[p] as usize];
+            let stress = crate::first_piola_stress(&h, elastic.mu, elastic.lambda) * self.particles.volume[p];
+            for e in entries {
+                force_x[e.field as usize] -= stress.m11 * e.gradient[0] + stress.m12 * e.gradient[1];
+                force_y[e.field as usize] -= stress.m21 * e.gradient[0] + stress.m22 * e.gradient[1];
+            }
+        }
+    }
+
+    /// A probe at `rest` that belongs to the material at `nudged`.
+    pub(super) fn probe(&self, rest: Point, nudged: Point) -> Probe {
+        Probe { rest, nudged, entries: self.probe_entries(rest, nudged) }
+    }
+
+    /// (field, weight) of a probe. Where a node has no material on the probe's side, the nearest particle carries the probe along
+    /// linearly instead: w_ip + ∇w_ip · (X − X_p), exact for rigid motion.
+    pub(super) fn probe_entries(&self, rest: Point, nudged: Point) -> Vec<(u32, f64)> {
+        let stencil = self.stencil(rest);
+        let mut entries = Vec::with_capacity(8);
+        for b in 0..stencil.width {
+            for a in 0..stencil.width {
+                let w = stencil.weight(a, b);
+                if w <= 1e-14 {
+                    continue;
+                }
+                let node = self.stencil_node(&stencil, a, b);
+                for share in self.division.pair(nudged, self.grid.position(node)) {
+                    match self.state.fields.find(node, &share.crossed) {
+                        Some(field) if self.state.mass[field] > 0.0 => entries.push((field as u32, w * share.fraction)),
+                        _ => return self.carried_entries(rest, nudged),
+                    }
+                }
+            }
+        }
+        entries
+    }
+
+    fn carried_entries(&self, rest: Point, nudged: Point) -> Vec<(u32, f64)> {
+        let at = (rest - self.particles.anchor) / self.particles.spacing;
+        let center = [at.x.floor() as i32, at.y.floor() as i32];
+        let mut nearest: Option<(bool, f64, usize)> = None;
+        for reach in [2, 6] {
+            for j in -reach..=reach {
+                for i in -reach..=reach {
+                    let Some(p) = self.lattice.at(center[0] + i, center[1] + j) else { continue };
+                    let place = self.particles.rest[p];
+                    let across = !self.division.crossed(place, nudged).is_empty();
+                    let candidate = (across, (place - rest).norm_squared(), p);
+                    if nearest.is_none_or(|n| candidate < n) {
+                        nearest = Some(candidate);
+                    }
+                }
+            }
+            if matches!(nearest, Some((false, ..))) {
+                break;
+            }
+        }
+        let Some((_, _, p)) = nearest else { return Vec::new() };
+        let offset = rest - self.particles.rest[p];
+        let mut entries = Vec::with_capacity(8);
+        self.for_each_entry(p, |field, w, g| entries.push((field as u32, w + g.dot(&offset))));
+        entries
+    }
+
+    /// Lays the probes of outlines and crack faces.
+    pub(super) fn lay_probes(&mut self, cracks: &[Crack]) {
+        self.state.faces = cracks.iter().map(|c| self.face_probes(c)).collect();
+        let spacing = 0.5 * self.grid.cell_size;
+        let mut outlines = Vec::new();
+        for body in &self.scene.bodies {
+            for ring in body.region.rings() {
+                let mut probes = Vec::new();
+                for i in 0..ring.len() {
+                    let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
+                    let pieces = ((b - a).norm() / spacing).ceil().max(1.0) as usize;
+                    for k in 0..pieces {
+                        let place = a + (b - a) * (k as f64 / pieces as f64);
+                        probes.push(self.probe(place, place));
+                    }
+                }
+                outlines.push(probes);
+            }
+        }
+        self.state.outlines = outlines;
+        for crack in 0..cracks.len() {
+            for (end, at) in [(cracks[crack].ends[0], 0), (cracks[crack].ends[1], 1)] {
+                if end == CrackEnd::Mouth {
+                    self.open_mouth(cracks, crack, at);
+                }
+            }
+        }
+    }
+
+    /// Probes of both faces of a crack.
+    pub(super) fn face_probes(&self, crack: &Crack) -> [Vec<Probe>; 2] {
+        let hair = NUDGE * self.grid.cell_size;
+        let n = crack.points.len();
+        [Side::Above, Side::Below].map(|side| {
+            (0..n)
+                .map(|k| {
+                    let before = crack.points[k.saturating_sub(1)];
+                    let after = crack.points[(k + 1).min(n - 1)];
+                    let tangent = (after - before).normalize();
+                    let normal = Vector::new(-tangent.y, tangent.x) * side.sign();
+                    self.probe(crack.points[k], crack.points[k] + normal * hair)
+                })
+                .collect()
+        })
+    }
+
+    /// Doubles the outline where a crack mouths at it: the two new vertices are the end points of the faces.
+    pub(super) fn open_mouth(&mut self, cracks: &[Crack], crack: usize, end: usize) {
+        let at = if end == 0 { 0 } else { cracks[crack].points.len() - 1 };
+        let place = cracks[crack].points[at];
+        let [above, below] = [0, 1].map(|side| self.state.faces[crack][side][at].clone());
+        let mut best: Option<(f64, usize, usize)> = None;
+        for (ring, probes) in self.state.outlines.iter().enumerate() {
+            for k in 0..probes.len() {
+                let (a, b) = (probes[k].rest, probes[(k + 1) % probes.len()].rest);
+                let distance = crate::particles::distance_to_segment(place, a, b);
+                if best.is_none_or(|x| distance < x.0) {
+                    best = Some((distance, ring, k));
+                }
+            }
+        }
+        let Some((_, ring, k)) = best else { return };
+        let probes = &mut self.state.outlines[ring];
+        // The material lies to the left of a ring. Walking along the ring, the left (above) of a crack that starts here and runs inward
+        // comes before the mouth, that of a crack that ends here after it.
+        let pair = if end == 0 { [above, below] } else { [below, above] };
+        // A vertex that coincides with the mouth gives way to the pair.
+        let close = |p: &Probe| (p.rest - place).norm() < 1e-9 * self.grid.cell_size;
+        let next = (k + 1) % probes.len();
+        if close(&probes[next]) {
+            probes.splice(next..=next, pair);
+        } else if close(&probes[k]) {
+            probes.splice(k..=k, pair);
+        } else {
+            probes.splice(k + 1..k + 1, pair);
+        }
+    }
+}

@@ -1,0 +1,334 @@
+//! Looking at the solver: what is around a tip, what a frame holds, whether the run is still sound, how large a step may be.
+
+use super::cut::Probe;
+use super::{FieldVectors, Total, left_of_tip};
+use crate::SimulationError;
+use crate::crack::{Crack, slot};
+use crate::crossing::Side;
+use crate::solver::{Observed, QuadraturePoint, TipZone};
+use fissure_scene::{CrackEnd, CrackFrame, End, Matrix, OutlineFrame, ParticleFrame, Point, Vector, orientation};
+
+/// A moment in the middle of a step: displacements and accelerations of the step's beginning, velocities half a step later.
+#[derive(Debug)]
+pub(super) struct Moment<'a> {
+    pub(super) solver: &'a Total,
+    /// Time by which velocities are ahead [s].
+    pub(super) half_step: f64,
+}
+
+/// Steps between two checks that everything is still finite and in range.
+const STEPS_BETWEEN_CHECKS: u32 = 64;
+/// Volume ratio below which the total Lagrangian formulation is out of its range.
+const SMALLEST_VOLUME_RATIO: f64 = 0.2;
+/// Principal stretch above which it is.
+const LARGEST_STRETCH: f64 = 3.0;
+/// Rounds of the power iteration. The Rayleigh quotient comes from below; after so many it is within 1 % on plates with and without cracks.
+const POWER_ROUNDS: usize = 60;
+
+impl Observed for Moment<'_> {
+    fn tip_zone(&self, cracks: &[Crack], crack: usize, end: End, radius: f64) -> TipZone {
+        self.solver.zone(cracks, crack, end, radius, self.half_step)
+    }
+
+    fn tip_now(&self, cracks: &[Crack], crack: usize, end: End) -> (Point, Vector) {
+        self.solver.tip_now(cracks, crack, end)
+    }
+}
+
+impl Observed for Total {
+    fn tip_zone(&self, cracks: &[Crack], crack: usize, end: End, radius: f64) -> TipZone {
+        self.zone(cracks, crack, end, radius, 0.0)
+    }
+
+    fn tip_now(&self, cracks: &[Crack], crack: usize, end: End) -> (Point, Vector) {
+        let faces = &self.state.faces[crack];
+        let n = faces[0].len();
+        let (tip, behind) = match end {
+            End::Start => (0, 1),
+            End::End => (n - 1, n - 2),
+        };
+        let place = |k: usize| {
+            let mean =
+                (faces[0][k].value(&self.state.displacement) + faces[1][k].value(&self.state.displacement)) * 0.5;
+            faces[0][k].rest + mean
+        };
+        let (now, before) = (place(tip), place(behind));
+        let ahead = now - before;
+        let length = ahead.norm();
+        (now, if length > 0.0 { ahead / length } else { cracks[crack].ahead(end) })
+    }
+}
+
+/// A turn by the angle whose tangent is `sine`/`cosine`, and what it differs from the identity, without cancellation.
+fn turn(cosine: f64, sine: f64) -> (Matrix, Matrix) {
+    let r = cosine.hypot(sine);
+    let (c, s) = if r > 0.0 { (cosine / r, sine / r) } else { (1.0, 0.0) };
+    let c_minus_one = if c > 0.0 { -s * s / (1.0 + c) } else { c - 1.0 };
+    (Matrix::new(c, -s, s, c), Matrix::new(c_minus_one, -s, s, c_minus_one))
+}
+
+impl Total {
+    fn zone(&self, cracks: &[Crack], crack: usize, end: End, radius: f64, half_step: f64) -> TipZone {
+        let line = &cracks[crack];
+        let tip = line.tip_position(end);
+        let ahead = line.ahead(end);
+        let s = self.particles.spacing;
+        let center = (tip - self.particles.anchor) / s;
+        let reach = (radius / s).ceil() as i32 + 1;
+        let center = [center.x.floor() as i32, center.y.floor() as i32];
+        let mut found: Vec<(usize, Matrix)> = Vec::new();
+        let mut mean = Matrix::zeros();
+        for j in center[1] - reach..=center[1] + reach {
+            for i in center[0] - reach..=center[0] + reach {
+                let Some(p) = self.lattice.at(i, j) else { continue };
+                if (self.particles.rest[p] - tip).norm_squared() >= radius * radius
+                    || self.particles.body[p] != line.body
+                {
+                    continue;
+                }
+                let h = self.gradient(p, &self.state.displacement);
+                mean += h;
+                found.push((p, h));
+            }
+        }
+        let mean = mean / found.len().max(1) as f64;
+        // Rigid turn R of the surroundings (polar decomposition of the mean F), then into the tip frame.
+        let (rotation, _) = turn(2.0 + mean.m11 + mean.m22, mean.m21 - mean.m12);
+        let back = rotation.transpose();
+        let (_, back_minus_one) = turn(2.0 + mean.m11 + mean.m22, mean.m12 - mean.m21);
+        let frame = Matrix::new(ahead.x, ahead.y, -ahead.y, ahead.x);
+        let mut points = Vec::with_capacity(found.len());
+        for (p, h) in found {
+            let e = &self.elastic[self.particles.material[p] as usize];
+            let arm = self.particles.rest[p] - tip;
+            let into = |m: Matrix| frame * m * frame.transpose();
+            let acceleration = self.value(p, &self.acceleration);
+            let velocity = self.value(p, &self.state.velocity) - acceleration * half_step;
+            points.push(QuadraturePoint {
+                place: frame * arm,
+                side: self.side_of(line, end, self.particles.rest[p]),
+                volume: self.particles.volume[p],
+                stress: into(back * crate::first_piola_stress(&h, e.mu, e.lambda)),
+                gradient: into(back * h + back_minus_one),
+                energy: crate::energy_density(&h, e.mu, e.lambda),
+                density: e.density,
+                velocity: frame * (back * velocity),
+                acceleration: frame * (back * acceleration),
+                material: self.particles.material[p],
+            });
+        }
+        let (opening, opening_distance) = self.opening(line, crack, end, frame * back);
+        TipZone { points, opening, opening_distance }
+    }
+
+    /// The face of the crack that a place sees, as a side of the tip frame: that of the nearest segment behind the tip, of the tip's own line ahead.
+    fn side_of(&self, line: &Crack, end: End, place: Point) -> Side {
+        let tip = line.tip_position(end);
+        let ahead = line.ahead(end);
+        let mut sign = ahead.perp(&(place - tip));
+        if (place - tip).dot(&ahead) < 0.0 {
+            let n = line.points.len();
+            let mut nearest = f64::INFINITY;
+            // The last few segments are those within the window of an integral.
+            let segments: Vec<(Point, Point)> = match end {
+                End::End => (n.saturating_sub(40).max(1)..n).map(|k| (line.points[k - 1], line.points[k])).collect(),
+                End::Start => (1..n.min(40)).map(|k| (line.points[k], line.points[k - 1])).collect(),
+            };
+            for (a, b) in segments {
+                let distance = crate::particles::distance_to_segment(place, a, b);
+                if distance < nearest {
+                    nearest = distance;
+                    sign = orientation(a, b, place);
+                }
+            }
+        }
+        if sign >= 0.0 { Side::Above } else { Side::Below }
+    }
+
+    /// Opening of the faces some way behind a tip, in the tip frame, and that distance.
+    fn opening(&self, line: &Crack, crack: usize, end: End, into: Matrix) -> (Vector, f64) {
+        // 1 to 3 cells behind the tip: nearer, the tip's own discretisation shows; farther, the next term of the series.
+        let wanted = 1.5 * self.grid.cell_size;
+        let n = line.points.len();
+        let mut distance = 0.0;
+        let order: Vec<usize> = match end {
+            End::End => (0..n).rev().collect(),
+            End::Start => (0..n).collect(),
+        };
+        for w in order.windows(2) {
+            let (from, to) = (line.points[w[0]], line.points[w[1]]);
+            let length = (to - from).norm();
+            if distance + length >= wanted {
+                let t = (wanted - distance) / length;
+                let jump = |k: usize| {
+                    let [above, below] = &self.state.faces[crack];
+                    above[k].value(&self.state.displacement) - below[k].value(&self.state.displacement)
+                };
+                // The probe between two crack points, a hair beside the crack.
+                let place = from + (to - from) * t;
+                let tangent = (to - from) / length;
+                let hair = Vector::new(-tangent.y, tangent.x) * (1e-6 * self.grid.cell_size);
+                // Seen from the tip looking ahead, left and right are the other way round.
+                let [left, right] = [-hair, hair];
+                let value = |offset: Vector| -> Option<Vector> {
+                    let entries = self.probe_entries(place, place + offset);
+                    (!entries.is_empty())
+                        .then(|| Probe { rest: place, nudged: place + offset, entries }.value(&self.state.displacement))
+                };
+                if let (Some(a), Some(b)) = (value(left), value(right)) {
+                    return (into * (a - b), wanted);
+                }
+                let sign = left_of_tip(end).sign();
+                return (into * (jump(w[1]) * sign), distance + length);
+            }
+            distance += length;
+        }
+        (Vector::zeros(), 0.0)
+    }
+
+    /// Checks now and then that the run is sound.
+    pub(super) fn watch(&mut self, time: f64) -> Result<(), SimulationError> {
+        self.steps_since_check += 1;
+        if self.steps_since_check < STEPS_BETWEEN_CHECKS {
+            return Ok(());
+        }
+        self.steps_since_check = 0;
+        for p in 0..self.particles.len() {
+            let h = self.gradient(p, &self.state.displacement);
+            let place = self.particles.rest[p] + self.value(p, &self.state.displacement);
+            let fail = |cause: String| SimulationError::Unstable { time, x: place.x, y: place.y, cause };
+            let volume_ratio = 1.0 + crate::volume_change(&h);
+            if !volume_ratio.is_finite() {
+                return Err(fail(format!(
+                    "particle {p} has lost its finite state; use a smaller `solver.courant` or weaker loads"
+                )));
+            }
+            // F has the largest singular value q + p.
+            let q = (1.0 + 0.5 * (h.m11 + h.m22)).hypot(0.5 * (h.m21 - h.m12));
+            let stretch = q + (0.5 * (h.m11 - h.m22)).hypot(0.5 * (h.m21 + h.m12));
+            if volume_ratio < SMALLEST_VOLUME_RATIO || stretch > LARGEST_STRETCH {
+                return Err(fail(format!(
+                    "particle {p} is stretched to {stretch:.2} with a volume ratio of {volume_ratio:.2}, out of the range of the \
+                     total Lagrangian formulation (below {LARGEST_STRETCH} and above {SMALLEST_VOLUME_RATIO}); set \
+                     `solver.formulation = \"updated\"`"
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// Largest stable step 2/ω_max [s] of the linearised discrete operator, cut cells included, by power iteration on M⁻¹K.
+    pub(super) fn power_iteration(&self) -> f64 {
+        let fields = self.state.mass.len();
+        // Strains so small that the law is linear to round-off.
+        let amplitude = 1e-7 * self.grid.cell_size;
+        let mut u: FieldVectors = [vec![0.0; fields], vec![0.0; fields]];
+        for (axis, values) in u.iter_mut().enumerate() {
+            for (d, value) in values.iter_mut().enumerate() {
+                if self.inverse_mass[d] > 0.0 {
+                    // A fixed start with all wavelengths in it, the shortest most.
+                    let node = self.state.fields.node(d);
+                    let (i, j) = (node % self.grid.columns, node / self.grid.columns);
+                    let sign = if (i + axis * (i + j)).is_multiple_of(2) { 1.0 } else { -1.0 };
+                    let jitter = ((d * 7919 + axis * 104_729) % 1009) as f64 / 1009.0;
+                    *value = sign * (0.5 + jitter);
+                }
+            }
+        }
+        let mut force: FieldVectors = [Vec::new(), Vec::new()];
+        let mut largest = 0.0_f64;
+        for _ in 0..POWER_ROUNDS {
+            let biggest = u.iter().flatten().fold(0.0_f64, |a, &b| a.max(b.abs()));
+            if biggest == 0.0 {
+                break;
+            }
+            u.iter_mut().flatten().for_each(|x| *x *= amplitude / biggest);
+            self.internal_forces(&u, &mut force);
+            let (mut upper, mut lower) = (0.0, 0.0);
+            for axis in 0..2 {
+                for d in 0..fields {
+                    upper -= u[axis][d] * force[axis][d];
+                    lower += u[axis][d] * u[axis][d] * self.state.mass[d];
+                    u[axis][d] = -force[axis][d] * self.inverse_mass[d];
+                }
+            }
+            largest = largest.max(upper / lower);
+        }
+        // What is still missing of the largest eigenvalue.
+        2.0 / (1.01 * largest).sqrt()
+    }
+
+    pub(super) fn frame_of_particles(&self) -> ParticleFrame {
+        let n = self.particles.len();
+        let mut frame = ParticleFrame {
+            id: (0..n as u32).collect(),
+            body: self.particles.body.clone(),
+            piece: vec![0; n],
+            rest: self.particles.rest.clone(),
+            ..ParticleFrame::default()
+        };
+        for p in 0..n {
+            let e = &self.elastic[self.particles.material[p] as usize];
+            let h = self.gradient(p, &self.state.displacement);
+            frame.position.push(self.particles.rest[p] + self.value(p, &self.state.displacement));
+            frame.velocity.push(self.value(p, &self.state.velocity));
+            frame.deformation_gradient.push(Matrix::identity() + h);
+            frame.cauchy_stress.push(crate::cauchy_stress(&h, e.mu, e.lambda));
+        }
+        frame
+    }
+
+    fn moved(&self, probe: &Probe) -> Point {
+        probe.rest + probe.value(&self.state.displacement)
+    }
+
+    pub(super) fn frames_of_outlines(&self) -> Vec<OutlineFrame> {
+        let mut frames = Vec::new();
+        let mut rings = self.state.outlines.iter();
+        for (body, b) in self.scene.bodies.iter().enumerate() {
+            for (ring, probes) in (0..=b.region.holes.len()).zip(rings.by_ref()) {
+                frames.push(OutlineFrame {
+                    body: body as u32,
+                    ring: ring as u32,
+                    rest: probes.iter().map(|p| p.rest).collect(),
+                    position: probes.iter().map(|p| self.moved(p)).collect(),
+                    velocity: probes.iter().map(|p| p.value(&self.state.velocity)).collect(),
+                });
+            }
+        }
+        frames
+    }
+
+    pub(super) fn frames_of_cracks(&self, cracks: &[Crack]) -> Vec<CrackFrame> {
+        let mut frames = Vec::new();
+        for (index, (crack, faces)) in cracks.iter().zip(&self.state.faces).enumerate() {
+            let side = |k: usize| -> (Vec<Point>, Vec<Vector>) {
+                faces[k].iter().map(|p| (self.moved(p), p.value(&self.state.velocity))).unzip()
+            };
+            let (mut above, mut above_velocity) = side(0);
+            let (mut below, mut below_velocity) = side(1);
+            for end in crate::crack::ENDS {
+                if crack.ends[slot(end)] == CrackEnd::Tip {
+                    // The faces meet at a tip.
+                    let k = if end == End::Start { 0 } else { above.len() - 1 };
+                    let middle = nalgebra::center(&above[k], &below[k]);
+                    let velocity = (above_velocity[k] + below_velocity[k]) * 0.5;
+                    (above[k], below[k]) = (middle, middle);
+                    (above_velocity[k], below_velocity[k]) = (velocity, velocity);
+                }
+            }
+            frames.push(CrackFrame {
+                crack: index as u32,
+                body: crack.body,
+                rest: crack.points.clone(),
+                above,
+                below,
+                above_velocity,
+                below_velocity,
+                start: crack.ends[0],
+                end: crack.ends[1],
+            });
+        }
+        frames
+    }
+}
