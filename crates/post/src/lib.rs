@@ -1,1 +1,48 @@
-//! post
+//! From frames to files: a [`Frame`](fissure_scene::Frame) becomes checked [`Mesh`]es ([`post_frame`]), these become
+//! GLB and PLY files ([`write_frame`]), and a [`Manifest`] lists them. Knows nothing of the solver: a take on disk can be
+//! posted again with another thickness.
+//!
+//! The stages of a cracked body, one module each:
+//! 1. `snap`: all positions go onto a power-of-two grid that is exact in `f32`.
+//! 2. `outline`, `opening`: the moved rings and the opening polygons of the cracks become boundary edges, each of which
+//!    knows the rest position, velocity and arc length of the material at its ends.
+//! 3. `boolean`: material is where the edges wind around a place at least once. An open crack takes one off; where
+//!    faces overlap one is added, so closed cracks have no walls; fragments may turn and fly apart as they like.
+//! 4. `pieces`: slivers that are mere rounding go; polygons get the fragment numbers of the simulation.
+//! 5. `pinch`: contours that touch in a point are parted, so that the solid is manifold for every reader.
+//! 6. `triangulate`, `extrude`: caps and walls, with normals, texture coordinates, velocities and material slots.
+//! 7. [`Mesh::check`]: closed, manifold, oriented, volume = area × thickness, in the precision of the file.
+//! 8. `glb`, `ply`, `write`, `manifest`.
+//!
+//! Promised: every solid that is returned has passed the check. Not promised: that polygons of different bodies, or of
+//! fragments that the simulation lets overlap in different bodies, stay apart; openings below two grid steps (4e-6 m in
+//! a body of 20 m) may be shown closed.
+
+mod boolean;
+mod colliders;
+mod cracked;
+mod extrude;
+mod faces;
+mod glb;
+mod manifest;
+mod mesh;
+mod opening;
+mod outline;
+mod packed;
+mod particles;
+mod pieces;
+mod pinch;
+mod ply;
+mod post;
+mod snap;
+mod source;
+mod triangulate;
+mod write;
+
+pub use glb::{GlbError, to_glb};
+pub use manifest::{FileRecord, Manifest};
+pub use mesh::{Content, Mesh, MeshDefect, Vertex};
+pub use ply::to_ply;
+pub use post::{FrameMeshes, PostError, PostOptions, Provenance, post_frame};
+pub use source::Slot;
+pub use write::{WriteError, file_name, write_frame};

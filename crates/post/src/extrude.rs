@@ -1,0 +1,128 @@
+//! From a polygon to a solid: two caps and the walls between them.
+
+use crate::boolean::{Edge, Shape};
+use crate::mesh::{Mesh, Vertex};
+use crate::snap::Grid;
+use crate::source::{Carried, Slot, SourceEdge};
+use crate::triangulate::triangulate;
+use fissure_scene::{Point, Vector};
+
+/// How a polygon becomes a solid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Extrusion<'a> {
+    /// The grid of the polygon.
+    pub(crate) grid: Grid,
+    /// Where its edges come from.
+    pub(crate) sources: &'a [SourceEdge],
+    /// Thickness, half of it on each side of the drawing plane [m].
+    pub(crate) thickness: f64,
+    /// Walls that turn by less than this are smooth [rad].
+    pub(crate) crease_angle: f64,
+    /// Place at rest with texture coordinates (0, 0) [m].
+    pub(crate) texture_origin: Point,
+    /// Length of one texture unit [m].
+    pub(crate) texture_size: f64,
+}
+
+impl Extrusion<'_> {
+    /// Adds caps and walls of `shape` to `mesh`.
+    pub(crate) fn solid(&self, shape: &Shape, mesh: &mut Mesh) {
+        self.caps(shape, mesh);
+        for contour in shape {
+            self.walls(contour, true, mesh);
+        }
+    }
+
+    /// Both caps; texture coordinates from the rest position, so that textures do not swim.
+    fn caps(&self, shape: &Shape, mesh: &mut Mesh) {
+        let triangles = triangulate(shape);
+        for side in [1.0, -1.0] {
+            let first = mesh.vertices.len() as u32;
+            for edge in shape.iter().flatten() {
+                let carried = self.source(edge).at(edge.a);
+                let place = self.grid.place(edge.a);
+                let texture = (carried.rest - self.texture_origin) / self.texture_size;
+                mesh.vertices.push(Vertex {
+                    position: [place.x, place.y, 0.5 * side * self.thickness],
+                    normal: [0.0, 0.0, side],
+                    texture: [texture.x, texture.y],
+                    velocity: [carried.velocity.x, carried.velocity.y, 0.0],
+                });
+            }
+            let turned = |[a, b, c]: [u32; 3]| if side > 0.0 { [a, b, c] } else { [a, c, b] };
+            let cap = triangles.iter().map(|&t| turned(t).map(|i| first + i));
+            mesh.triangles[Slot::Outside as usize].extend(cap);
+        }
+    }
+
+    /// The walls on the edges of `contour`, which is a ring if `closed`; texture coordinates by arc length at rest.
+    pub(crate) fn walls(&self, contour: &[Edge], closed: bool, mesh: &mut Mesh) {
+        let count = contour.len();
+        let posts: Vec<[Post; 2]> = (0..count)
+            .map(|i| {
+                let (edge, source) = (&contour[i], self.source(&contour[i]));
+                let before = (i > 0 || closed).then(|| &contour[(i + count - 1) % count]);
+                let after = (i + 1 < count || closed).then(|| &contour[(i + 1) % count]);
+                let post =
+                    |point, other| Post { point, carried: source.at(point), normal: self.corner_normal(edge, other) };
+                [post(edge.a, before), post(edge.b, after)]
+            })
+            .collect();
+        // Beginning at a seam, a smooth wall never has to close on vertices of its beginning.
+        let seam = (0..count).find(|&i| posts[i][0] != posts[(i + count - 1) % count][1]).unwrap_or(0);
+        let mut previous: Option<(Post, [u32; 2])> = None;
+        for i in (seam..count).chain(0..seam) {
+            let [start, end] = posts[i];
+            let a = match previous {
+                Some((post, vertices)) if post == start => vertices,
+                _ => self.post(&start, mesh),
+            };
+            let b = self.post(&end, mesh);
+            let slot = self.source(&contour[i]).slot;
+            mesh.triangles[slot as usize].extend([[a[0], b[0], b[1]], [a[0], b[1], a[1]]]);
+            previous = Some((end, b));
+        }
+    }
+
+    /// Adds the two vertices of a vertical wall edge, the back one first.
+    fn post(&self, post: &Post, mesh: &mut Mesh) -> [u32; 2] {
+        let place = self.grid.place(post.point);
+        let first = mesh.vertices.len() as u32;
+        for z in [-0.5 * self.thickness, 0.5 * self.thickness] {
+            mesh.vertices.push(Vertex {
+                position: [place.x, place.y, z],
+                normal: [post.normal.x, post.normal.y, 0.0],
+                texture: [post.carried.arc / self.texture_size, (z + 0.5 * self.thickness) / self.texture_size],
+                velocity: [post.carried.velocity.x, post.carried.velocity.y, 0.0],
+            });
+        }
+        [first, first + 1]
+    }
+
+    /// Normal of the wall on `edge` where it meets the wall on `other`: halfway between both when the corner is smooth.
+    fn corner_normal(&self, edge: &Edge, other: Option<&Edge>) -> Vector {
+        let own = wall_normal(edge);
+        let Some(other) = other else { return own };
+        let theirs = wall_normal(other);
+        let same_slot = self.source(edge).slot == self.source(other).slot;
+        let smooth = same_slot && own.dot(&theirs) >= self.crease_angle.cos();
+        if smooth { (own + theirs).normalize() } else { own }
+    }
+
+    fn source(&self, edge: &Edge) -> &SourceEdge {
+        &self.sources[edge.source.0 as usize]
+    }
+}
+
+/// A vertical wall edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Post {
+    point: crate::snap::GridPoint,
+    carried: Carried,
+    normal: Vector,
+}
+
+/// Outward unit normal of the wall on `edge`: to its right.
+fn wall_normal(edge: &Edge) -> Vector {
+    Vector::new((edge.b.y - edge.a.y) as f64, (edge.a.x - edge.b.x) as f64).normalize()
+}

@@ -1,0 +1,42 @@
+//! The crack faces as surfaces.
+
+use crate::boolean::{Edge, SourceIndex};
+use crate::extrude::Extrusion;
+use crate::mesh::{Content, Mesh};
+use crate::opening::opening_edges;
+use crate::post::{PostOptions, object_name};
+use crate::snap::Grid;
+use fissure_scene::{CrackFrame, Frame, Scene};
+
+/// One mesh per crack: both faces over the thickness, normals into the opening. Closed cracks have faces too.
+pub(crate) fn face_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Vec<Mesh> {
+    frame.cracks.iter().map(|crack| face_mesh(scene, crack, options)).collect()
+}
+
+fn face_mesh(scene: &Scene, crack: &CrackFrame, options: &PostOptions) -> Mesh {
+    let body = &scene.bodies[crack.body as usize];
+    let (low, high) = body.region.bounds();
+    let grid = Grid::covering(crack.above.iter().chain(&crack.below));
+    let first = scene.cracks.get(crack.crack as usize).and_then(|c| c.points.first().copied());
+    let sources = opening_edges(crack, first, grid);
+    let extrusion = Extrusion {
+        grid,
+        sources: &sources,
+        thickness: options.thickness,
+        crease_angle: options.crease_angle,
+        texture_origin: low,
+        texture_size: (high - low).amax(),
+    };
+    let name = object_name(&body.name, "crack", crack.crack);
+    let mut mesh = Mesh::new(name, crack.crack, Content::Surface);
+    // Without the two closing edges, which lie in the opening and not on a face.
+    let count = crack.rest.len();
+    for face in [0..count.saturating_sub(1), count..(2 * count).saturating_sub(1)] {
+        let edges: Vec<Edge> = face
+            .map(|i| Edge { a: sources[i].a, b: sources[i].b, source: SourceIndex(i as u32) })
+            .filter(|edge| edge.a != edge.b)
+            .collect();
+        extrusion.walls(&edges, false, &mut mesh);
+    }
+    mesh
+}

@@ -1,0 +1,231 @@
+//! Binary glTF 2.0: y up, one node per mesh, one primitive per material slot.
+
+use crate::mesh::{Content, Mesh};
+use crate::packed::{PackedVertex, compact, pack};
+use crate::post::Provenance;
+use crate::source::Slot;
+use fissure_scene::UpAxis;
+use gltf_json::accessor::{ComponentType, GenericComponentType, Type};
+use gltf_json::buffer::Target;
+use gltf_json::material::{PbrBaseColorFactor, PbrMetallicRoughness, StrengthFactor};
+use gltf_json::mesh::{Mode, Primitive, Semantic};
+use gltf_json::validation::{Checked::Valid, USize64};
+use gltf_json::{Accessor, Asset, Buffer, Index, Material, Node, Root, Scene, Value, buffer, serialize};
+use std::collections::BTreeMap;
+
+/// The bytes of a GLB file with `meshes`.
+///
+/// Attributes: `POSITION`, `NORMAL`, `TEXCOORD_0`, `_VELOCITY` [m/s] and `_PIECE` (fragment number); points have no
+/// normals and texture coordinates. Materials: `outside` and `inside`, those that are used. `asset.extras` says where the
+/// file comes from. No meshes give a valid file with nothing in it.
+///
+/// # Errors
+/// When the file would be larger than the 4 GiB of the format.
+pub fn to_glb(meshes: &[Mesh], provenance: &Provenance) -> Result<Vec<u8>, GlbError> {
+    let mut document = Document::default();
+    let mut nodes = Vec::new();
+    for mesh in meshes {
+        nodes.extend(document.node(mesh));
+    }
+    let Document { mut root, binary, .. } = document;
+    root.asset = asset(provenance)?;
+    if !nodes.is_empty() {
+        let scene = Scene { extensions: None, extras: None, name: Some(provenance.scene.clone()), nodes };
+        root.scene = Some(root.push(scene));
+        let length = USize64::from(binary.len());
+        root.push(Buffer { byte_length: length, name: None, uri: None, extensions: None, extras: None });
+    }
+    container(serialize::to_vec(&root)?, binary)
+}
+
+/// Why a GLB file cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub enum GlbError {
+    /// The format counts bytes in 32 bits.
+    #[error("the file would take {0} bytes, more than the 4 GiB a GLB file can hold; write PLY or fewer particles")]
+    TooLarge(usize),
+    /// The document could not be written as JSON.
+    #[error("the glTF document cannot be written as JSON: {0}")]
+    Json(#[from] gltf_json::Error),
+}
+
+fn asset(provenance: &Provenance) -> Result<Asset, GlbError> {
+    let extras = gltf_json::serialize::to_string(provenance)?;
+    Ok(Asset {
+        generator: Some(provenance.tool.clone()),
+        extras: Some(gltf_json::deserialize::from_str(&extras)?),
+        ..Asset::default()
+    })
+}
+
+/// A document in the making.
+#[derive(Default)]
+struct Document {
+    root: Root,
+    binary: Vec<u8>,
+    materials: BTreeMap<Slot, Index<Material>>,
+}
+
+impl Document {
+    /// Adds `mesh` with its node; a mesh without vertices adds nothing, the format has no empty meshes.
+    fn node(&mut self, mesh: &Mesh) -> Option<Index<Node>> {
+        let primitives = self.primitives(mesh);
+        if primitives.is_empty() {
+            return None;
+        }
+        let mesh_index = self.root.push(gltf_json::Mesh {
+            extensions: None,
+            extras: None,
+            name: Some(mesh.name.clone()),
+            primitives,
+            weights: None,
+        });
+        Some(self.root.push(Node { mesh: Some(mesh_index), name: Some(mesh.name.clone()), ..Node::default() }))
+    }
+
+    fn primitives(&mut self, mesh: &Mesh) -> Vec<Primitive> {
+        if mesh.content == Content::Points {
+            let vertices: Vec<_> = mesh.vertices.iter().map(|v| pack(v, UpAxis::Y)).collect();
+            let attributes = self.common_attributes(&vertices, mesh.piece);
+            let primitive = Primitive { mode: Valid(Mode::Points), ..primitive(attributes) };
+            return if vertices.is_empty() { Vec::new() } else { vec![primitive] };
+        }
+        let used = Slot::ALL.into_iter().filter(|slot| !mesh.slot(*slot).is_empty());
+        used.map(|slot| self.triangles(mesh, slot)).collect()
+    }
+
+    fn triangles(&mut self, mesh: &Mesh, slot: Slot) -> Primitive {
+        let (vertices, triangles) = compact(mesh, mesh.slot(slot), UpAxis::Y);
+        let mut attributes = self.common_attributes(&vertices, mesh.piece);
+        let normals = vertices.iter().flat_map(|v| v.normal);
+        let normals = self.floats(normals, vertices.len(), Type::Vec3);
+        // Texture coordinates of the format count downwards.
+        let texture = vertices.iter().flat_map(|v| [v.texture[0], 1.0 - v.texture[1]]);
+        let texture = self.floats(texture, vertices.len(), Type::Vec2);
+        attributes.insert(Valid(Semantic::Normals), normals);
+        attributes.insert(Valid(Semantic::TexCoords(0)), texture);
+        let indices = triangles.iter().flatten().flat_map(|i| i.to_le_bytes()).collect();
+        let indices =
+            self.accessor(indices, 3 * triangles.len(), Type::Scalar, ComponentType::U32, Target::ElementArrayBuffer);
+        let material = self.material(slot);
+        Primitive { indices: Some(indices), material: Some(material), ..primitive(attributes) }
+    }
+
+    /// Attributes that triangles and points have.
+    fn common_attributes(&mut self, vertices: &[PackedVertex], piece: u32) -> Attributes {
+        let mut attributes = Attributes::new();
+        let positions = self.floats(vertices.iter().flat_map(|v| v.position), vertices.len(), Type::Vec3);
+        let bound = |pick: fn(f32, f32) -> f32, start: f32| {
+            let all = vertices.iter().fold([start; 3], |b, v| std::array::from_fn(|i| pick(b[i], v.position[i])));
+            Some(Value::from(all.to_vec()))
+        };
+        if let Some(accessor) = self.root.accessors.get_mut(positions.value()) {
+            accessor.min = bound(f32::min, f32::INFINITY);
+            accessor.max = bound(f32::max, f32::NEG_INFINITY);
+        }
+        attributes.insert(Valid(Semantic::Positions), positions);
+        let velocity = self.floats(vertices.iter().flat_map(|v| v.velocity), vertices.len(), Type::Vec3);
+        attributes.insert(Valid(Semantic::Extras("VELOCITY".to_owned())), velocity);
+        let pieces = vertices.iter().map(|_| piece as f32);
+        let pieces = self.floats(pieces, vertices.len(), Type::Scalar);
+        attributes.insert(Valid(Semantic::Extras("PIECE".to_owned())), pieces);
+        attributes
+    }
+
+    fn floats(&mut self, values: impl Iterator<Item = f32>, count: usize, kind: Type) -> Index<Accessor> {
+        let bytes = values.flat_map(f32::to_le_bytes).collect();
+        self.accessor(bytes, count, kind, ComponentType::F32, Target::ArrayBuffer)
+    }
+
+    /// Appends `bytes` with a view and an accessor of their own. All components have four bytes, so all stay aligned.
+    fn accessor(
+        &mut self,
+        bytes: Vec<u8>,
+        count: usize,
+        kind: Type,
+        component: ComponentType,
+        target: Target,
+    ) -> Index<Accessor> {
+        let view = self.root.push(buffer::View {
+            buffer: Index::new(0),
+            byte_length: USize64::from(bytes.len()),
+            byte_offset: Some(USize64::from(self.binary.len())),
+            byte_stride: None,
+            name: None,
+            target: Some(Valid(target)),
+            extensions: None,
+            extras: None,
+        });
+        self.binary.extend(bytes);
+        self.root.push(Accessor {
+            buffer_view: Some(view),
+            byte_offset: None,
+            count: USize64::from(count),
+            component_type: Valid(GenericComponentType(component)),
+            extensions: None,
+            extras: None,
+            type_: Valid(kind),
+            min: None,
+            max: None,
+            name: None,
+            normalized: false,
+            sparse: None,
+        })
+    }
+
+    fn material(&mut self, slot: Slot) -> Index<Material> {
+        let root = &mut self.root;
+        *self.materials.entry(slot).or_insert_with(|| root.push(material(slot)))
+    }
+}
+
+type Attributes = BTreeMap<gltf_json::validation::Checked<Semantic>, Index<Accessor>>;
+
+fn primitive(attributes: Attributes) -> Primitive {
+    Primitive {
+        attributes,
+        extensions: None,
+        extras: None,
+        indices: None,
+        material: None,
+        mode: Valid(Mode::Triangles),
+        targets: None,
+    }
+}
+
+/// Plain materials to be replaced by the artist: a pale smooth skin, rougher and darker fracture surfaces.
+fn material(slot: Slot) -> Material {
+    let (color, roughness) = match slot {
+        Slot::Outside => ([0.75, 0.78, 0.8, 1.0], 0.35),
+        Slot::Inside => ([0.45, 0.5, 0.53, 1.0], 0.7),
+    };
+    Material {
+        name: Some(slot.name().to_owned()),
+        pbr_metallic_roughness: PbrMetallicRoughness {
+            base_color_factor: PbrBaseColorFactor(color),
+            metallic_factor: StrengthFactor(0.0),
+            roughness_factor: StrengthFactor(roughness),
+            ..PbrMetallicRoughness::default()
+        },
+        ..Material::default()
+    }
+}
+
+/// Joins the two chunks of a GLB file, each padded to four bytes: JSON with spaces, binary with zeros.
+fn container(mut json: Vec<u8>, binary: Vec<u8>) -> Result<Vec<u8>, GlbError> {
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let chunks = [(b"JSON", json), (b"BIN\0", binary)];
+    let used = || chunks.iter().filter(|(_, data)| !data.is_empty());
+    let length = 12 + used().map(|(_, data)| 8 + data.len()).sum::<usize>();
+    let total = u32::try_from(length).map_err(|_| GlbError::TooLarge(length))?;
+    let mut file = Vec::with_capacity(length);
+    file.extend(b"glTF");
+    file.extend(2_u32.to_le_bytes());
+    file.extend(total.to_le_bytes());
+    for (kind, data) in used() {
+        file.extend((data.len() as u32).to_le_bytes());
+        file.extend(*kind);
+        file.extend(data);
+    }
+    Ok(file)
+}

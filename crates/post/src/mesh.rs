@@ -1,0 +1,165 @@
+//! Meshes as they are written, and the check that a solid is one.
+
+use crate::source::Slot;
+use std::collections::HashMap;
+
+/// A vertex. The drawing lies in the x–y plane, y up, z towards the viewer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Vertex {
+    /// Position [m].
+    pub position: [f64; 3],
+    /// Outward normal, of unit length; zero for points.
+    pub normal: [f64; 3],
+    /// Texture coordinates, v upwards; 1 is the longest side of the body's bounding box at rest.
+    pub texture: [f64; 2],
+    /// Velocity [m/s].
+    pub velocity: [f64; 3],
+}
+
+/// What a mesh is made of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Content {
+    /// Triangles that close a solid: a plane region extruded.
+    Solid {
+        /// Area of the plane region [m²].
+        area: f64,
+        /// Thickness [m].
+        thickness: f64,
+    },
+    /// Triangles of an open surface.
+    Surface,
+    /// Vertices only.
+    Points,
+}
+
+/// One object of a file: a fragment, a collider, a crack or a cloud of particles.
+///
+/// Vertices are split where normals or texture coordinates differ on both sides; the solid is closed by position.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mesh {
+    /// Name, without dots.
+    pub name: String,
+    /// Fragment number of the simulation, or index of the crack or collider.
+    pub piece: u32,
+    /// What it is made of.
+    pub content: Content,
+    /// Vertices.
+    pub vertices: Vec<Vertex>,
+    /// Triangles by slot, counter-clockwise from outside.
+    pub triangles: [Vec<[u32; 3]>; 2],
+}
+
+impl Mesh {
+    /// An empty mesh.
+    pub(crate) fn new(name: String, piece: u32, content: Content) -> Self {
+        Self { name, piece, content, vertices: Vec::new(), triangles: [Vec::new(), Vec::new()] }
+    }
+
+    /// Triangles of one slot.
+    pub fn slot(&self, slot: Slot) -> &[[u32; 3]] {
+        &self.triangles[slot as usize]
+    }
+
+    /// All triangles.
+    pub fn all_triangles(&self) -> impl Iterator<Item = [u32; 3]> {
+        self.triangles.iter().flatten().copied()
+    }
+
+    /// Number of triangles.
+    pub fn triangle_count(&self) -> usize {
+        self.triangles.iter().map(Vec::len).sum()
+    }
+
+    /// Volume enclosed by the triangles with positions rounded to `f32`, as a file holds them [m³].
+    pub fn volume(&self) -> f64 {
+        // Relative to a vertex of the mesh, so that a small solid far from the origin keeps its digits.
+        let Some(origin) = self.vertices.first().map(|v| rounded(v.position)) else { return 0.0 };
+        let corner = |i: u32| subtract(rounded(self.vertices[i as usize].position), origin);
+        self.all_triangles().map(|[a, b, c]| dot(corner(a), cross(corner(b), corner(c))) / 6.0).sum()
+    }
+
+    /// Checks that the mesh is a solid after rounding to `f32`: closed, manifold, oriented outwards, without degenerate
+    /// triangles, and of volume = area × thickness within 1e-6 relative. Surfaces and points pass.
+    ///
+    /// # Errors
+    /// The first defect found, with its place.
+    pub fn check(&self) -> Result<(), MeshDefect> {
+        let Content::Solid { area, thickness } = self.content else { return Ok(()) };
+        let mut corners = HashMap::new();
+        // Adding zero makes −0 and 0 the same vertex, as they are to a reader.
+        let mut corner = |i: u32| {
+            let place = rounded(self.vertices[i as usize].position).map(|x| (x + 0.0).to_bits());
+            let next = corners.len();
+            *corners.entry(place).or_insert(next)
+        };
+        let mut edges = HashMap::new();
+        for triangle in self.all_triangles() {
+            let [p, q, r] = triangle.map(|i| rounded(self.vertices[i as usize].position));
+            let normal = cross(subtract(q, p), subtract(r, p));
+            if dot(normal, normal) == 0.0 {
+                return Err(MeshDefect::Degenerate { place: p });
+            }
+            let [a, b, c] = triangle.map(&mut corner);
+            for (edge, place) in [((a, b), p), ((b, c), q), ((c, a), r)] {
+                if edges.insert(edge, place).is_some() {
+                    return Err(MeshDefect::NotManifold { place });
+                }
+            }
+        }
+        let open = edges.iter().filter(|((a, b), _)| !edges.contains_key(&(*b, *a)));
+        // The smallest, so that the message does not depend on the order of the map.
+        if let Some((_, &place)) = open.min_by_key(|(edge, _)| **edge) {
+            return Err(MeshDefect::Open { place });
+        }
+        let (volume, expected) = (self.volume(), area * thickness);
+        let close = (volume - expected).abs() <= 1e-6 * expected;
+        if close { Ok(()) } else { Err(MeshDefect::WrongVolume { volume, expected }) }
+    }
+}
+
+/// What keeps a mesh from being a solid.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum MeshDefect {
+    /// A triangle without area.
+    #[error("a triangle at {place:?} has no area")]
+    Degenerate {
+        /// A corner of it [m].
+        place: [f64; 3],
+    },
+    /// An edge with more than two triangles, or with two of opposite orientation.
+    #[error("more than two triangles meet in the edge at {place:?}")]
+    NotManifold {
+        /// Start of the edge [m].
+        place: [f64; 3],
+    },
+    /// An edge with one triangle.
+    #[error("the surface has a hole at {place:?}")]
+    Open {
+        /// Start of the edge [m].
+        place: [f64; 3],
+    },
+    /// The volume is not area × thickness.
+    #[error("the volume is {volume:e} m³ instead of {expected:e} m³")]
+    WrongVolume {
+        /// Volume enclosed [m³].
+        volume: f64,
+        /// Area × thickness [m³].
+        expected: f64,
+    },
+}
+
+fn rounded(position: [f64; 3]) -> [f64; 3] {
+    position.map(|x| f64::from(x as f32))
+}
+
+fn subtract(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}

@@ -1,0 +1,25 @@
+//! The moved rings of a body as boundary edges.
+
+use crate::snap::Grid;
+use crate::source::{Carried, Slot, SourceEdge};
+use fissure_scene::OutlineFrame;
+
+/// The edges of one ring, in ring order.
+pub(crate) fn outline_edges(outline: &OutlineFrame, grid: Grid) -> Vec<SourceEdge> {
+    let count = outline.position.len();
+    let mut arc = 0.0;
+    (0..count)
+        .map(|i| {
+            let next = (i + 1) % count;
+            let start = Carried { rest: outline.rest[i], velocity: outline.velocity[i], arc };
+            arc += (outline.rest[next] - outline.rest[i]).norm();
+            let end = Carried { rest: outline.rest[next], velocity: outline.velocity[next], arc };
+            SourceEdge {
+                a: grid.snap(outline.position[i]),
+                b: grid.snap(outline.position[next]),
+                carried: [start, end],
+                slot: Slot::Outside,
+            }
+        })
+        .collect()
+}

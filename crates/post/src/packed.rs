@@ -1,0 +1,44 @@
+//! Meshes as files hold them: single precision, only the vertices that are used.
+
+use crate::mesh::{Mesh, Vertex};
+use fissure_scene::UpAxis;
+
+/// A vertex in single precision.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PackedVertex {
+    pub(crate) position: [f32; 3],
+    pub(crate) normal: [f32; 3],
+    pub(crate) texture: [f32; 2],
+    pub(crate) velocity: [f32; 3],
+}
+
+/// Rounds a vertex and turns it so that `up` points up; a turn by a right angle, exact.
+pub(crate) fn pack(vertex: &Vertex, up: UpAxis) -> PackedVertex {
+    let turn = |[x, y, z]: [f64; 3]| match up {
+        UpAxis::Y => [x as f32, y as f32, z as f32],
+        // The viewer, who stood on +z, stands on −y: the front view of programs with z up.
+        UpAxis::Z => [x as f32, -z as f32, y as f32],
+    };
+    PackedVertex {
+        position: turn(vertex.position),
+        normal: turn(vertex.normal),
+        texture: vertex.texture.map(|x| x as f32),
+        velocity: turn(vertex.velocity),
+    }
+}
+
+/// The vertices that `triangles` use, in the order of first use, and the triangles in terms of them.
+pub(crate) fn compact(mesh: &Mesh, triangles: &[[u32; 3]], up: UpAxis) -> (Vec<PackedVertex>, Vec<[u32; 3]>) {
+    let mut new_index = vec![u32::MAX; mesh.vertices.len()];
+    let mut vertices = Vec::new();
+    let mut renumbered = |old: u32| {
+        let new = &mut new_index[old as usize];
+        if *new == u32::MAX {
+            *new = vertices.len() as u32;
+            vertices.push(pack(&mesh.vertices[old as usize], up));
+        }
+        *new
+    };
+    let triangles = triangles.iter().map(|t| t.map(&mut renumbered)).collect();
+    (vertices, triangles)
+}

@@ -1,0 +1,372 @@
+//! From frames to checked solids. Truth: closed forms, the shoelace formula, and a brute-force winding area.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod common;
+#[path = "common/winding.rs"]
+mod winding;
+
+use common::{Opened, frame, halves, options, scene, square};
+use fissure_post::{Content, Mesh, PostError, Slot, post_frame};
+use fissure_scene::{CrackEnd, Frame, Part, Point, Region, Scene, Vector};
+use proptest::prelude::*;
+use winding::covered_area;
+
+fn cracked(scene: &Scene, frame: &Frame) -> Vec<Mesh> {
+    post_frame(scene, frame, &options(scene)).unwrap().parts.remove(0).1
+}
+
+fn area(meshes: &[Mesh]) -> f64 {
+    let area = |m: &Mesh| if let Content::Solid { area, .. } = m.content { area } else { panic!("not a solid") };
+    meshes.iter().map(area).sum()
+}
+
+fn inside_triangles(meshes: &[Mesh]) -> usize {
+    meshes.iter().map(|m| m.slot(Slot::Inside).len()).sum()
+}
+
+/// What the boundary of the body winds around, from the frame alone.
+fn brute_force_area(frame: &Frame) -> f64 {
+    let openings = frame.cracks.iter().map(|c| {
+        let mut ring: Vec<Point> = c.above.iter().chain(c.below.iter().rev()).copied().collect();
+        let (n, middle) = (c.rest.len(), |i: usize| nalgebra::center(&c.above[i], &c.below[i]));
+        if c.start == CrackEnd::Tip {
+            (ring[0], ring[2 * n - 1]) = (middle(0), middle(0));
+        }
+        if c.end == CrackEnd::Tip {
+            (ring[n - 1], ring[n]) = (middle(n - 1), middle(n - 1));
+        }
+        ring
+    });
+    let rings: Vec<Vec<Point>> = frame.outlines.iter().map(|o| o.position.clone()).chain(openings).collect();
+    covered_area(&rings)
+}
+
+fn edge_crack(size: f64, opening: f64) -> Opened {
+    let rest = (0..=4).map(|i| Point::new(0.1 * size * f64::from(i), 0.5 * size)).collect();
+    let profile: Vec<f64> = (0..=4).map(|i| opening * (1.0 - 0.25 * f64::from(i))).collect();
+    Opened::symmetric(rest, &profile, CrackEnd::Mouth, CrackEnd::Tip)
+}
+
+#[test]
+fn a_whole_square_is_a_box() {
+    let region = square(20.0);
+    let scene = scene(region.clone());
+    let meshes = cracked(&scene, &frame(&region, 1, &[]));
+    assert_eq!(meshes.len(), 1);
+    assert_eq!(meshes[0].name, "plate_piece_0000");
+    assert_eq!(meshes[0].triangle_count(), 12);
+    assert_eq!(area(&meshes), 400.0);
+    assert_eq!(inside_triangles(&meshes), 0);
+}
+
+#[test]
+fn an_open_edge_crack_takes_off_its_triangle() {
+    for size in [1e-3, 20.0, 1e4] {
+        let region = square(size);
+        let scene = scene(region.clone());
+        let opening = 0.01 * size;
+        let meshes = cracked(&scene, &frame(&region, 3, &[edge_crack(size, opening)]));
+        let expected = size * size - 0.5 * 0.4 * size * opening;
+        // Each corner may move by half a step of size · 2⁻²³ or so.
+        assert!((area(&meshes) / expected - 1.0).abs() < 1e-6, "{} {expected}", area(&meshes));
+        // Four wall edges on each face.
+        assert_eq!(inside_triangles(&meshes), 2 * 2 * 4);
+    }
+}
+
+#[test]
+fn a_closed_crack_has_no_walls() {
+    let region = square(20.0);
+    let scene = scene(region.clone());
+    for opening in [0.0, -1e-9, -1e-3, -0.1] {
+        let through = Opened { end: CrackEnd::Mouth, ..edge_crack_across(20.0, opening) };
+        for crack in [edge_crack(20.0, opening), through] {
+            let meshes = cracked(&scene, &frame(&region, 3, &[crack]));
+            assert_eq!(inside_triangles(&meshes), 0, "opening {opening}");
+            assert_eq!(meshes.len(), 1);
+            // Overlapping material counts once, and nothing is missing.
+            assert!((area(&meshes) - 400.0).abs() < 1e-4, "{}", area(&meshes) - 400.0);
+        }
+    }
+}
+
+/// A crack from the left edge to the right edge.
+fn edge_crack_across(size: f64, opening: f64) -> Opened {
+    let rest: Vec<Point> = (0..=4).map(|i| Point::new(0.25 * size * f64::from(i), 0.5 * size)).collect();
+    Opened::symmetric(rest, &[opening; 5], CrackEnd::Mouth, CrackEnd::Mouth)
+}
+
+#[test]
+fn fragments_turn_and_fly_apart() {
+    let far = Vector::new(37.0, -11.0);
+    // Upside down and away; swapped sides; a small gap; a corner that overlaps the other half.
+    for motions in [
+        [(0.0, Vector::zeros()), (3.0, far)],
+        [(1.0, far), (-2.0, -far)],
+        [(0.0, Vector::zeros()), (0.0, Vector::new(1e-3, 0.0))],
+    ] {
+        let (scene, frame) = halves(20.0, motions);
+        let meshes = cracked(&scene, &frame);
+        assert_eq!(meshes.iter().map(|m| m.piece).collect::<Vec<_>>(), [0, 1]);
+        for mesh in &meshes {
+            assert!((area(std::slice::from_ref(mesh)) - 200.0).abs() < 1e-3);
+            assert_eq!(mesh.slot(Slot::Inside).len(), 2 * 8);
+        }
+    }
+    let (scene, frame) = halves(20.0, [(0.0, Vector::zeros()), (0.1, Vector::new(0.2, 0.0))]);
+    let meshes = cracked(&scene, &frame);
+    assert!((area(&meshes) - brute_force_area(&frame)).abs() < 1e-3);
+}
+
+#[test]
+fn a_crack_may_run_from_a_hole() {
+    let mut region = square(20.0);
+    region.holes = vec![[(8.0, 8.0), (8.0, 12.0), (12.0, 12.0), (12.0, 8.0)].map(|(x, y)| Point::new(x, y)).to_vec()];
+    let scene = scene(region.clone());
+    // From the exterior into the hole, and from the hole to a tip.
+    let one = (0..=3).map(|i| Point::new(8.0 / 3.0 * f64::from(i), 10.0)).collect();
+    let two = (0..=3).map(|i| Point::new(12.0 + f64::from(i), 10.0)).collect();
+    let one = Opened::symmetric(one, &[0.1; 4], CrackEnd::Mouth, CrackEnd::Mouth);
+    let two = Opened::symmetric(two, &[0.2, 0.2, 0.1, 0.0], CrackEnd::Mouth, CrackEnd::Tip);
+    let meshes = cracked(&scene, &frame(&region, 1, &[one, two]));
+    let expected = 400.0 - 16.0 - 0.8 - (0.2 + 0.15 + 0.05);
+    assert!((area(&meshes) - expected).abs() < 1e-4, "{}", area(&meshes));
+}
+
+#[test]
+fn a_branch_opens_into_the_crack_it_ends_on() {
+    let region = square(20.0);
+    let scene = scene(region.clone());
+    let (a, b) = (0.1, 0.2);
+    // Along y = 10, its upper face parted by b where the branch comes down at x = 8.
+    let x = [0.0, 4.0, 8.0, 8.0, 12.0];
+    let trunk = Opened {
+        rest: x.iter().map(|&x| Point::new(x, 10.0)).collect(),
+        above: [0.0, 0.0, -b, b, 0.0].iter().map(|&dx| Vector::new(dx, a)).collect(),
+        below: x.iter().map(|_| Vector::new(0.0, -a)).collect(),
+        start: CrackEnd::Mouth,
+        end: CrackEnd::Tip,
+    };
+    // Upwards from the trunk: its left side is above.
+    let branch = Opened {
+        rest: (0..=2).map(|i| Point::new(8.0, 10.0 + 2.0 * f64::from(i))).collect(),
+        above: vec![Vector::new(-b, a), Vector::new(-b, 0.0), Vector::zeros()],
+        below: vec![Vector::new(b, a), Vector::new(b, 0.0), Vector::zeros()],
+        start: CrackEnd::Junction { crack: 0 },
+        end: CrackEnd::Tip,
+    };
+    let frame = frame(&region, 1, &[trunk, branch]);
+    let meshes = cracked(&scene, &frame);
+    // Trunk: a strip of height 2a over 8 m and a triangle of 4 m; branch: a strip 2b wide and a triangle; no skin between.
+    let trunk = 2.0 * a * 8.0 + 0.5 * 2.0 * a * 4.0 - 0.5 * a * b;
+    let branch = 2.0 * b * (2.0 - a) + 0.5 * 2.0 * b * 2.0;
+    let expected = brute_force_area(&frame);
+    assert!((area(&meshes) - expected).abs() < 1e-4);
+    assert!((400.0 - trunk - branch - expected).abs() < 2.0 * a * b, "{expected}");
+    assert_eq!(meshes.len(), 1);
+    let at_junction = |p: &[f64; 3]| (p[0] - 8.0).abs() < 0.5 * b && (p[1] - 10.0 - a).abs() < 1e-3;
+    assert!(!meshes[0].vertices.iter().any(|v| at_junction(&v.position)), "a wall across the junction");
+}
+
+#[test]
+fn openings_that_touch_in_a_point_are_parted() {
+    let region = square(20.0);
+    let scene = scene(region.clone());
+    // Two lens-shaped cracks whose middles touch in (10, 10): the material hangs together in a point there.
+    let lens = |y: f64, down: f64, up: f64| Opened {
+        rest: (0..=2).map(|i| Point::new(6.0 + 4.0 * f64::from(i), y)).collect(),
+        above: vec![Vector::zeros(), Vector::new(0.0, up), Vector::zeros()],
+        below: vec![Vector::zeros(), Vector::new(0.0, -down), Vector::zeros()],
+        start: CrackEnd::Tip,
+        end: CrackEnd::Tip,
+    };
+    let frame = frame(&region, 1, &[lens(9.0, 0.5, 1.0), lens(11.0, 1.0, 0.5)]);
+    let meshes = cracked(&scene, &frame);
+    // The four edges of 4 m that meet there now end on the rim of the diamond, half a step of 2⁻¹⁹ m off at most.
+    assert!((area(&meshes) - brute_force_area(&frame)).abs() <= 4.0 * 4.0 * 2.0_f64.powi(-20));
+    let at_touch = |v: &&fissure_post::Vertex| v.position[0] == 10.0 && v.position[1] == 10.0;
+    assert_eq!(meshes[0].vertices.iter().filter(at_touch).count(), 0);
+}
+
+#[test]
+fn small_fragments_are_dropped_when_asked() {
+    let (mut scene, frame) = halves(20.0, [(0.0, Vector::zeros()), (0.0, Vector::new(1.0, 0.0))]);
+    scene.output.smallest_fragment = 201.0;
+    assert_eq!(cracked(&scene, &frame).len(), 0);
+    scene.output.smallest_fragment = 199.0;
+    assert_eq!(cracked(&scene, &frame).len(), 2);
+}
+
+#[test]
+fn a_polygon_without_particles_belongs_to_the_nearest() {
+    let (scene, mut frame) = halves(20.0, [(0.0, Vector::zeros()), (0.0, Vector::new(1.0, 0.0))]);
+    let particles = &mut frame.particles;
+    let keep = particles.position.iter().position(|p| p.x < 10.0).unwrap();
+    for field in [&mut particles.id, &mut particles.body] {
+        *field = vec![field[keep]; 1];
+    }
+    (particles.piece, particles.position) = (vec![7], vec![particles.position[keep]]);
+    (particles.rest, particles.velocity) = (vec![particles.rest[keep]], vec![particles.velocity[keep]]);
+    let meshes = cracked(&scene, &frame);
+    assert_eq!(meshes.iter().map(|m| m.piece).collect::<Vec<_>>(), [7]);
+    assert!((area(&meshes) - 400.0).abs() < 1e-3);
+}
+
+#[test]
+fn textures_stay_with_the_material() {
+    let shift = Vector::new(3.0, 0.5);
+    let (scene, frame) = halves(20.0, [(0.0, Vector::zeros()), (0.3, shift)]);
+    let (_, rest) = halves(20.0, [(0.0, Vector::zeros()), (0.0, Vector::new(1.0, 0.0))]);
+    // Truth: the same material in another place. Both frames have the same vertices in another order.
+    let textures = |meshes: Vec<Mesh>| {
+        let mut all: Vec<_> =
+            meshes.iter().flat_map(|m| &m.vertices).map(|v| v.texture.map(|t| (t * 1e6).round())).collect();
+        all.sort_by(|a, b| a.partial_cmp(b).unwrap());
+        all
+    };
+    let moved = textures(cracked(&scene, &frame));
+    assert_eq!(moved, textures(cracked(&scene, &rest)));
+    assert!(moved.iter().all(|t| (0.0..=4e6).contains(&t[0]) && (0.0..=1e6).contains(&t[1])));
+}
+
+#[test]
+fn walls_are_smooth_below_the_crease_angle() {
+    let count = 64;
+    let corner = |i: usize| {
+        let (sin, cos) = (std::f64::consts::TAU * i as f64 / count as f64).sin_cos();
+        Point::new(cos, sin)
+    };
+    let region = Region { exterior: (0..count).map(corner).collect(), holes: Vec::new() };
+    let scene = scene(region.clone());
+    let mesh = cracked(&scene, &frame(&region, 1, &[])).remove(0);
+    for vertex in mesh.vertices.iter().filter(|v| v.normal[2] == 0.0) {
+        let [x, y, _] = vertex.position;
+        assert!((vertex.normal[0] - x).abs() < 1e-6 && (vertex.normal[1] - y).abs() < 1e-6);
+    }
+    // One pair of wall vertices per corner, and one more where the ring closes.
+    assert_eq!(mesh.vertices.len(), 2 * count + 2 * (count + 1));
+}
+
+#[test]
+fn damaged_frames_are_refused() {
+    let region = square(20.0);
+    let scene = scene(region.clone());
+    let good = frame(&region, 1, &[edge_crack(20.0, 0.1)]);
+    let refused = |change: &dyn Fn(&mut Frame)| {
+        let mut bad = good.clone();
+        change(&mut bad);
+        let error = post_frame(&scene, &bad, &options(&scene)).unwrap_err();
+        assert!(matches!(error, PostError::Inconsistent { frame: 1, .. }), "{error}");
+    };
+    refused(&|f| f.outlines[0].position[2].x = f64::NAN);
+    refused(&|f| f.cracks[0].body = 3);
+    refused(&|f| f.cracks[0].above.truncate(2));
+    refused(&|f| f.particles.piece.truncate(2));
+    let mut thin = options(&scene);
+    thin.thickness = 0.0;
+    assert!(matches!(post_frame(&scene, &good, &thin), Err(PostError::Option { name: "thickness", .. })));
+}
+
+#[test]
+fn all_parts_of_a_scene() {
+    use fissure_scene::{Collider, ColliderShape, Contact, Pose};
+    let region = square(20.0);
+    let mut scene = scene(region.clone());
+    let pose = Pose { position: Point::new(1.0, -2.0), angle: 0.4 };
+    let shapes = [
+        ColliderShape::HalfPlane { normal: Vector::new(0.0, 1.0) },
+        ColliderShape::Disc { radius: 2.0 },
+        ColliderShape::Box { half_extents: Vector::new(3.0, 0.5) },
+        ColliderShape::Polygon { ring: square(1.0).exterior },
+    ];
+    for shape in shapes {
+        let later = Pose { position: pose.position + Vector::new(0.0, 6.0), angle: 0.4 };
+        let (keyframes, contact) = (vec![(0.0, pose), (2.0, later)], Contact::Stick);
+        scene.colliders.push(Collider { name: "floor.1".into(), shape, keyframes, contact, friction: 0.0 });
+    }
+    let mut frame = frame(&region, 1, &[edge_crack(20.0, 0.1)]);
+    frame.colliders = vec![pose; 4];
+    let mut options = options(&scene);
+    options.parts = vec![Part::Cracked, Part::Body, Part::Faces, Part::Collider, Part::Particles];
+    let parts = post_frame(&scene, &frame, &options).unwrap().parts;
+    let part = |i: usize| &parts[i].1;
+
+    // The outline keeps its notch of 0.1 at the mouth only as the edge between the two tracers.
+    assert!((area(part(1)) - 400.0).abs() < 1e-4);
+    assert_eq!(part(2)[0].slot(Slot::Inside).len(), 2 * 2 * 4);
+    let disc = &part(3)[1];
+    assert_eq!(disc.name, "floor_1_collider_0001");
+    assert!((area(std::slice::from_ref(disc)) - 4.0 * std::f64::consts::PI).abs() < 0.01);
+    assert!((area(&part(3)[2..3]) - 6.0).abs() < 1e-4);
+    assert!(part(3)[2].vertices.iter().all(|v| (v.velocity[1] - 3.0).abs() < 1e-12));
+    // No corner of the floor is above its surface, which passes through the origin of the collider.
+    let normal = nalgebra::Rotation2::new(0.4) * Vector::new(0.0, 1.0);
+    let height = |v: &fissure_post::Vertex| (Point::new(v.position[0], v.position[1]) - pose.position).dot(&normal);
+    let heights: Vec<f64> = part(3)[0].vertices.iter().map(height).collect();
+    assert!(heights.iter().all(|h| *h < 1e-4) && heights.iter().any(|h| *h > -1e-4));
+    assert_eq!(part(4)[0].vertices.len(), 400);
+}
+
+/// A random crack: where it runs, how its faces move (from 1e-9 to 0.1 m, opening, closing or sliding), what its ends are.
+fn random_crack() -> impl Strategy<Value = Opened> {
+    let ends = prop_oneof![Just(0), Just(1), Just(2)];
+    let motion = (-9.0..-1.0_f64, -1.0..1.0_f64, -1.0..1.0_f64);
+    (ends, 0.02..0.98_f64, 0.02..0.98_f64, proptest::collection::vec((motion, -1.0..1.0_f64), 2..12)).prop_map(
+        |(ends, y0, y1, points)| {
+            let size = 20.0;
+            let (x0, x1) = [(0.0, 1.0), (0.0, 0.7), (0.2, 0.7)][ends];
+            let (start, end) =
+                [(CrackEnd::Mouth, CrackEnd::Mouth), (CrackEnd::Mouth, CrackEnd::Tip), (CrackEnd::Tip, CrackEnd::Tip)]
+                    [ends];
+            let last = points.len() - 1;
+            let (mut rest, mut above, mut below) = (Vec::new(), Vec::new(), Vec::new());
+            for (i, ((exponent, normal, slide), wander)) in points.into_iter().enumerate() {
+                let s = i as f64 / last as f64;
+                let wander = if i == 0 || i == last { 0.0 } else { 0.02 * wander };
+                rest.push(Point::new(size * (x0 + s * (x1 - x0)), size * (y0 + s * (y1 - y0) + wander)));
+                let moved = 10.0_f64.powf(exponent) * Vector::new(slide, normal);
+                above.push(moved);
+                below.push(-moved);
+            }
+            Opened { rest, above, below, start, end }
+        },
+    )
+}
+
+/// Area of the solids against brute force; `post_frame` itself checks that they are solids.
+fn agrees_with_brute_force(cracks: &[Opened]) -> Result<(), String> {
+    let region = square(20.0);
+    let scene = scene(region.clone());
+    let frame = frame(&region, 3, cracks);
+    let meshes = post_frame(&scene, &frame, &options(&scene)).map_err(|e| e.to_string())?.parts.remove(0).1;
+    let (found, expected) = (area(&meshes), brute_force_area(&frame));
+    // Snapping moves each side by half a step (2⁻²⁰ m), filled slivers are two steps wide, the longest contours have 200 m.
+    let tolerance = 200.0 * 2.5 * 2.0_f64.powi(-19);
+    if (found - expected).abs() < tolerance { Ok(()) } else { Err(format!("area {found} instead of {expected}")) }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
+
+    #[test]
+    fn random_cracks_leave_solids(cracks in proptest::collection::vec(random_crack(), 1..4)) {
+        agrees_with_brute_force(&cracks).map_err(TestCaseError::fail)?;
+    }
+}
+
+/// The same at length: `cargo test -p fissure-post --test solids -- --ignored --nocapture`.
+#[test]
+#[ignore = "takes minutes"]
+fn thousands_of_random_cracks_leave_solids() {
+    use proptest::strategy::ValueTree;
+    use proptest::test_runner::TestRunner;
+    let mut runner = TestRunner::deterministic();
+    let cases = 5000;
+    let failures: Vec<String> = (0..cases)
+        .filter_map(|_| {
+            let cracks = proptest::collection::vec(random_crack(), 1..4).new_tree(&mut runner).unwrap().current();
+            agrees_with_brute_force(&cracks).err()
+        })
+        .collect();
+    assert!(failures.is_empty(), "{} of {cases} failed, the first: {}", failures.len(), failures[0]);
+}
