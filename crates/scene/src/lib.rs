@@ -2,13 +2,27 @@
 //!
 //! This crate promises validated input (every number finite and in range, every reference resolved, geometry simple and
 //! oriented) and takes that another program can read. It knows no physics and draws nothing.
+//!
+//! [`load`] reads a scene file and its drawing; scenes made in code call [`Scene::validate`].
 
+pub mod document;
+mod fault;
 mod frame;
 mod geometry;
+mod infinite;
+mod load;
+mod outline;
+mod presets;
 mod scene;
 mod settings;
+mod take;
+mod validate;
 
+pub use fault::{Key, KeyPath, SceneFault};
 pub use frame::*;
 pub use geometry::*;
+pub use load::{LoadError, LoadErrorKind, load, schema, template};
+pub use presets::{material_preset, material_presets, solver_preset, updated_kernel};
 pub use scene::*;
 pub use settings::*;
+pub use take::*;

@@ -242,6 +242,7 @@ pub struct Collider {
     /// What happens at contact.
     pub contact: Contact,
     /// Coulomb friction for slip and separate [–].
+    #[serde(with = "crate::infinite")]
     pub friction: f64,
 }
 

@@ -128,6 +128,7 @@ pub struct SolverSettings {
     /// Contact between the two faces of a crack.
     pub crack_contact: bool,
     /// Coulomb friction between crack faces; infinite: stick.
+    #[serde(with = "crate::infinite")]
     pub crack_friction: f64,
     /// Material around the tip.
     pub tip_division: TipDivision,

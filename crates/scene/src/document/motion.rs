@@ -1,0 +1,183 @@
+//! What moves and holds the bodies of a scene file: colliders, loads, supports, velocities.
+
+use super::Shape;
+use crate::scene::{BoxSide, Contact};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A rigid obstacle.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ColliderKeys {
+    /// Name, unique among the colliders. Default: `collider-1`, `collider-2`, ...
+    pub name: Option<String>,
+    /// Where it is, before `keyframes` move it. Required.
+    pub shape: ColliderShapeKeys,
+    /// What happens at contact: `separate` (default; pushed out, may leave), `slip` (stays on the surface, slides) or
+    /// `stick` (takes the collider's velocity).
+    #[serde(default)]
+    pub contact: Contact,
+    /// Coulomb friction for `separate` and `slip`. Default: 0.
+    #[serde(default)]
+    pub friction: f64,
+    /// Motion: linear between keyframes, at rest before the first and after the last. Default: at rest.
+    #[serde(default)]
+    pub keyframes: Vec<Keyframe>,
+}
+
+/// Shape of a collider: one of these.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ColliderShapeKeys {
+    /// Everything on one side of a line. Turns about `point`.
+    HalfPlane(HalfPlaneKeys),
+    /// Disc. Turns about its centre.
+    Disc(DiscKeys),
+    /// Axis-parallel rectangle. Turns about its centre.
+    Box(BoxKeys),
+    /// Simple polygon `[[x, y], ...]` in m. Turns about its centre of area.
+    Polygon(Vec<[f64; 2]>),
+    /// Element of the drawing, by id: one closed outline without holes. Turns about its centre of area.
+    Svg(String),
+}
+
+/// Everything on one side of a line.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HalfPlaneKeys {
+    /// A point [x, y] of the surface in m.
+    pub point: [f64; 2],
+    /// Direction [x, y] out of the obstacle; any length. Default: up.
+    #[serde(default = "up")]
+    pub normal: [f64; 2],
+}
+
+fn up() -> [f64; 2] {
+    [0.0, 1.0]
+}
+
+/// Disc.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DiscKeys {
+    /// Centre [x, y] in m.
+    pub center: [f64; 2],
+    /// Radius in m.
+    pub radius: f64,
+}
+
+/// Axis-parallel rectangle.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BoxKeys {
+    /// Lower left corner [x, y] in m.
+    pub min: [f64; 2],
+    /// Upper right corner [x, y] in m.
+    pub max: [f64; 2],
+}
+
+/// Where a collider is at one moment, relative to where it was drawn.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Keyframe {
+    /// Time in s; rising from keyframe to keyframe.
+    pub time: f64,
+    /// Displacement [x, y] in m.
+    #[serde(default)]
+    pub position: [f64; 2],
+    /// Turn in degrees, counter-clockwise.
+    #[serde(default)]
+    pub angle: f64,
+}
+
+/// Which material is meant. Without any key: everything. `body` alone: that body; `edge` may be combined with `body`.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Select {
+    /// The layer of particles along one side of the bodies' bounding box: `left`, `right`, `bottom` or `top`.
+    pub edge: Option<BoxSide>,
+    /// Name of a body.
+    pub body: Option<String>,
+    /// Material inside a shape (its edges included).
+    pub region: Option<Shape>,
+    /// Material within `radius` of these points [[x, y], ...] in m.
+    pub near: Option<Vec<[f64; 2]>>,
+    /// Distance in m; needs `near`.
+    pub radius: Option<f64>,
+}
+
+/// A load: give exactly one of `force`, `traction` and `per_point`.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LoadKeys {
+    /// Material the load acts on. Default: everything.
+    #[serde(default)]
+    pub select: Select,
+    /// Total force [x, y] per metre of thickness in N/m, shared among the selected material.
+    pub force: Option<[f64; 2]>,
+    /// Force per area [x, y] in Pa on the selected edge; needs `select = { edge = ... }`.
+    pub traction: Option<[f64; 2]>,
+    /// Forces on single particles.
+    pub per_point: Option<Vec<PointForce>>,
+    /// Factor over time, [[time in s, factor], ...] with rising times, linear between. Default: always 1.
+    #[serde(default)]
+    pub curve: Vec<[f64; 2]>,
+}
+
+/// A force on the particle nearest to a point.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PointForce {
+    /// Place [x, y] in m.
+    pub at: [f64; 2],
+    /// Force [x, y] per metre of thickness in N/m.
+    pub force: [f64; 2],
+}
+
+/// A support: give `fix`, or `velocity_x` and/or `velocity_y`.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SupportKeys {
+    /// Material that is held. Default: everything.
+    #[serde(default)]
+    pub select: Select,
+    /// Directions that are held still.
+    pub fix: Option<Fix>,
+    /// Velocity along x in m/s; without it the material is free along x.
+    pub velocity_x: Option<f64>,
+    /// Velocity along y in m/s; without it the material is free along y.
+    pub velocity_y: Option<f64>,
+    /// Factor on the velocity over time, [[time in s, factor], ...] with rising times, linear between. Default: always 1.
+    #[serde(default)]
+    pub curve: Vec<[f64; 2]>,
+}
+
+/// Directions that are held still.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Fix {
+    /// Along x.
+    X,
+    /// Along y.
+    Y,
+    /// Both.
+    Both,
+}
+
+/// A velocity at the start, added to that of the bodies.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InitialVelocityKeys {
+    /// Material that gets it. Default: everything.
+    #[serde(default)]
+    pub select: Select,
+    /// Velocity [x, y] in m/s.
+    #[serde(default)]
+    pub velocity: [f64; 2],
+    /// Rotation, counter-clockwise, in rad/s.
+    #[serde(default)]
+    pub angular_velocity: f64,
+    /// Centre of the rotation [x, y] in m. Default: the origin.
+    #[serde(default)]
+    pub center: [f64; 2],
+}

@@ -1,0 +1,212 @@
+//! Resolution, solver, growth, frames and output of a scene file.
+
+use crate::scene::Plasticity;
+use crate::settings::*;
+use schemars::JsonSchema;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+use std::fmt;
+
+/// Resolution.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct GridKeys {
+    /// Distance between neighbouring particles in m. Default: the larger side of the bodies' bounding box / 128.
+    pub particle_spacing: Option<f64>,
+    /// Distance between neighbouring grid nodes in m. Default: twice the particle spacing.
+    pub cell_size: Option<f64>,
+}
+
+/// Solver settings; each defaults to the preset's value.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct SolverKeys {
+    /// Settings to start from: `standard` (default, recommended) or `thesis` (the scheme of Fumoto 2022).
+    pub preset: SolverPreset,
+    /// Where kernels live: `auto`, `total` or `updated` Lagrangian.
+    pub formulation: Option<Formulation>,
+    /// What to do when the total formulation leaves its range: `stop` or `switch` to the updated one.
+    pub on_distortion: Option<OnDistortion>,
+    /// Interpolation: `bilinear`, `gimp`, `quadratic` or `cubic`.
+    pub kernel: Option<Kernel>,
+    /// Grid to particle transfer (updated formulation): `pic`, `{ flip = 0.95 }`, `apic` or `xpic`.
+    pub transfer: Option<Transfer>,
+    /// Time step in s, or `"auto"` (default): chosen from the stability limit.
+    pub time_step: TimeStep,
+    /// Fraction of the stability limit that is used, above 0 up to 1.
+    pub courant: Option<f64>,
+    /// Damping: velocities decay as exp(-damping t), in 1/s.
+    pub damping: Option<f64>,
+    /// Whether the two faces of a crack push on each other.
+    pub crack_contact: Option<bool>,
+    /// Coulomb friction between crack faces; `inf`: they stick.
+    pub crack_friction: Option<f64>,
+    /// How the material around a tip is divided: `line_crossing` or `partly_cut`.
+    pub tip_division: Option<TipDivision>,
+    /// How the energy release rate is measured: `contour` or `domain`.
+    pub j_method: Option<JMethod>,
+    /// Radius of the contour or domain, in cells.
+    pub j_radius: Option<f64>,
+    /// Whether the dynamic area term is added to the energy release rate.
+    pub area_term: Option<bool>,
+    /// How modes are told apart: `opening_displacement` or `interaction`.
+    pub mode_split: Option<ModeSplit>,
+}
+
+/// A time step: `"auto"` or seconds.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum TimeStep {
+    /// Chosen from the stability limit.
+    #[default]
+    #[schemars(with = "AutoWord")]
+    Auto,
+    /// Seconds.
+    Seconds(f64),
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "snake_case")]
+#[allow(dead_code, reason = "only describes a word to the JSON schema")]
+enum AutoWord {
+    Auto,
+}
+
+impl<'de> Deserialize<'de> for TimeStep {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct TimeStepVisitor;
+        impl Visitor<'_> for TimeStepVisitor {
+            type Value = TimeStep;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("\"auto\" or a number of seconds")
+            }
+            fn visit_str<E: serde::de::Error>(self, word: &str) -> Result<TimeStep, E> {
+                if word == "auto" {
+                    Ok(TimeStep::Auto)
+                } else {
+                    Err(E::invalid_value(serde::de::Unexpected::Str(word), &self))
+                }
+            }
+            fn visit_f64<E>(self, seconds: f64) -> Result<TimeStep, E> {
+                Ok(TimeStep::Seconds(seconds))
+            }
+            fn visit_i64<E>(self, seconds: i64) -> Result<TimeStep, E> {
+                Ok(TimeStep::Seconds(seconds as f64))
+            }
+        }
+        deserializer.deserialize_any(TimeStepVisitor)
+    }
+}
+
+/// Growth of cracks.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct GrowthKeys {
+    /// Whether cracks grow. Default: true.
+    pub enabled: Option<bool>,
+    /// Length of one increment, in cells.
+    pub increment: Option<f64>,
+    /// How much cracks bend: 0 straight on, 1 physical (default), above 1 exaggerated. Changes the direction only, never the moment.
+    pub bending: Option<f64>,
+    /// Highest speed of a tip as a fraction of the Rayleigh wave speed, above 0 up to 1.
+    pub speed_limit: Option<f64>,
+}
+
+/// Which frames to compute. The first one is the state at rest, time 0.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct FrameKeys {
+    /// Number of the first frame. Default: 1.
+    pub first: Option<i64>,
+    /// Number of the last frame. Default: 47 frames after the first.
+    pub last: Option<i64>,
+    /// First and last frame in one, as `"1-48"`; instead of `first` and `last`.
+    pub range: Option<String>,
+    /// Frames per second of simulated time. Default: 24. Cracks are fast: slow motion needs thousands.
+    pub rate: Option<f64>,
+}
+
+/// Which meshes to write.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct OutputKeys {
+    /// Thickness of the solids in m. Default: a tenth of the larger side of the bodies' bounding box.
+    pub thickness: Option<f64>,
+    /// File formats: `glb`, `ply`. Default: both.
+    pub formats: Vec<Format>,
+    /// What to write: `cracked` (default), `body`, `faces`, `collider`, `particles`.
+    pub parts: Vec<Part>,
+    /// Axis that points up in PLY files: `y` or `z` (default). GLB is always y up.
+    pub up: UpAxis,
+    /// Fragments of less area than this in m² are dropped. Default: 0, none.
+    pub smallest_fragment: f64,
+}
+
+impl Default for OutputKeys {
+    fn default() -> Self {
+        Self {
+            thickness: None,
+            formats: vec![Format::Glb, Format::Ply],
+            parts: vec![Part::Cracked],
+            up: UpAxis::default(),
+            smallest_fragment: 0.0,
+        }
+    }
+}
+
+/// Plasticity of a material.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum PlasticityKeys {
+    /// `false`: elastic; `true`: the values of snow.
+    Switch(bool),
+    /// Its values.
+    Values(PlasticityValues),
+}
+
+/// Values of snow plasticity (Stomakhin et al. 2013); each defaults to that of snow.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct PlasticityValues {
+    /// Critical compression θ_c: strain beyond it is plastic.
+    pub critical_compression: Option<f64>,
+    /// Critical stretch θ_s: strain beyond it is plastic.
+    pub critical_stretch: Option<f64>,
+    /// Hardening ξ: how much compressed material stiffens.
+    pub hardening: Option<f64>,
+}
+
+impl PlasticityKeys {
+    /// The plasticity meant, with `snow`'s values where none are given.
+    pub fn resolve(self, snow: Plasticity) -> Option<Plasticity> {
+        match self {
+            Self::Switch(false) => None,
+            Self::Switch(true) => Some(snow),
+            Self::Values(values) => Some(Plasticity {
+                critical_compression: values.critical_compression.unwrap_or(snow.critical_compression),
+                critical_stretch: values.critical_stretch.unwrap_or(snow.critical_stretch),
+                hardening: values.hardening.unwrap_or(snow.hardening),
+            }),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for PlasticityKeys {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct PlasticityVisitor;
+        impl<'de> Visitor<'de> for PlasticityVisitor {
+            type Value = PlasticityKeys;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("true, false or { critical_compression, critical_stretch, hardening }")
+            }
+            fn visit_bool<E>(self, on: bool) -> Result<PlasticityKeys, E> {
+                Ok(PlasticityKeys::Switch(on))
+            }
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<PlasticityKeys, A::Error> {
+                PlasticityValues::deserialize(MapAccessDeserializer::new(map)).map(PlasticityKeys::Values)
+            }
+        }
+        deserializer.deserialize_any(PlasticityVisitor)
+    }
+}

@@ -1,0 +1,103 @@
+//! The error of loading a scene, with all that a report needs.
+
+use super::source::SceneSource;
+use crate::fault::SceneFault;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// What kind of mistake it is; decides the exit code.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LoadErrorKind {
+    /// The scene asks for something that does not exist or cannot be (exit code 2).
+    Scene,
+    /// A file is missing, unreadable or malformed (exit code 3).
+    InputFile,
+}
+
+/// Why a scene could not be loaded.
+#[derive(Debug, Clone, thiserror::Error)]
+#[error("{}: {message}; {remedy}", self.place())]
+pub struct LoadError {
+    /// What kind of mistake it is.
+    pub kind: LoadErrorKind,
+    /// The file it is in, or the override (`--set a.b=c`).
+    pub path: PathBuf,
+    /// The text of that file, if it could be read.
+    pub source_text: Option<String>,
+    /// Bytes of `source_text` that are meant.
+    pub span: Option<Range<usize>>,
+    /// What is wrong, with the offending value.
+    pub message: String,
+    /// What to do about it.
+    pub remedy: String,
+}
+
+impl LoadError {
+    /// Line of the file, from 1.
+    pub fn line(&self) -> Option<usize> {
+        let (text, span) = (self.source_text.as_ref()?, self.span.as_ref()?);
+        Some(1 + text.bytes().take(span.start).filter(|&b| b == b'\n').count())
+    }
+
+    /// File and line as `scene.toml:12`.
+    pub fn place(&self) -> String {
+        match self.line() {
+            Some(line) => format!("{}:{line}", self.path.display()),
+            None => self.path.display().to_string(),
+        }
+    }
+
+    /// A file that cannot be used.
+    pub(crate) fn file(path: &Path, message: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self {
+            kind: LoadErrorKind::InputFile,
+            path: path.into(),
+            source_text: None,
+            span: None,
+            message: message.into(),
+            remedy: remedy.into(),
+        }
+    }
+
+    /// A malformed file: the mistake is at `span` of `text`.
+    pub(crate) fn malformed(
+        path: &Path,
+        text: &str,
+        span: Option<Range<usize>>,
+        message: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        Self { source_text: Some(text.into()), span, ..Self::file(path, message, remedy) }
+    }
+
+    /// A fault of the scene, shown where its key is written: in the file, or in the override that set it.
+    pub(crate) fn fault(source: &SceneSource, fault: SceneFault) -> Self {
+        let (path, source_text, span) = source.locate(&fault.path);
+        Self {
+            kind: LoadErrorKind::Scene,
+            path,
+            source_text: Some(source_text),
+            span,
+            message: fault.message,
+            remedy: fault.remedy,
+        }
+    }
+}
+
+/// Reads a text file.
+pub(crate) fn read_text(path: &Path, what: &str) -> Result<String, LoadError> {
+    let bytes = read_bytes(path, what)?;
+    String::from_utf8(bytes).map_err(|e| {
+        LoadError::file(
+            path,
+            format!("{what} is not UTF-8 text (byte {})", e.utf8_error().valid_up_to()),
+            "save it as plain UTF-8 text (a compressed SVG has to be unpacked first)",
+        )
+    })
+}
+
+/// Reads a file.
+pub(crate) fn read_bytes(path: &Path, what: &str) -> Result<Vec<u8>, LoadError> {
+    std::fs::read(path)
+        .map_err(|e| LoadError::file(path, format!("cannot read {what}: {e}"), "check the path and its permissions"))
+}

@@ -1,0 +1,68 @@
+//! From a scene file to a [`Scene`]: defaults, then the file, then overrides.
+
+mod cracks;
+mod drawing;
+mod error;
+mod overrides;
+mod resolve;
+mod source;
+mod template;
+
+pub use error::{LoadError, LoadErrorKind};
+pub use template::template;
+
+use crate::document::Document;
+use crate::scene::Scene;
+use drawing::LoadedDrawing;
+use resolve::Resolver;
+use sha2::{Digest, Sha256};
+use source::SceneSource;
+use std::path::Path;
+
+/// Loads a scene file and everything it refers to, with `overrides` such as `body.plate.material=glass` on top.
+///
+/// The scene passes [`Scene::validate`]. Mouths of cracks are corners of their rings to the bit.
+///
+/// # Errors
+/// [`LoadError`], which says where: file, line, value and remedy.
+pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, LoadError> {
+    let (source, document) = SceneSource::read(path, overrides)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let drawing = match &document.drawing {
+        Some(drawing) => Some(LoadedDrawing::read(drawing, folder, |fault| LoadError::fault(&source, fault))?),
+        None => None,
+    };
+    let resolver = Resolver::new(&document, drawing.as_ref(), default_name(path));
+    let mut scene = resolver.scene().map_err(|fault| LoadError::fault(&source, fault))?;
+    scene.hash = hash(&source, drawing.as_ref());
+    Ok(scene)
+}
+
+/// JSON schema of the scene file, for editors and user interfaces.
+pub fn schema() -> serde_json::Value {
+    schemars::schema_for!(Document).into()
+}
+
+/// The folder's name for `folder/scene.toml`, otherwise the file's own without extension.
+fn default_name(path: &Path) -> String {
+    let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    if stem != "scene" {
+        return stem;
+    }
+    let absolute = std::path::absolute(path).unwrap_or_else(|_| path.into());
+    let folder = absolute.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
+    folder.unwrap_or(stem)
+}
+
+/// SHA-256 over the scene file, the overrides, the drawing and its font, each with its length in front.
+fn hash(source: &SceneSource, drawing: Option<&LoadedDrawing>) -> String {
+    let mut sha = Sha256::new();
+    let mut add = |part: &[u8]| {
+        sha.update((part.len() as u64).to_le_bytes());
+        sha.update(part);
+    };
+    add(source.text.as_bytes());
+    source.override_arguments().for_each(|argument| add(argument.as_bytes()));
+    drawing.iter().flat_map(|d| &d.bytes).for_each(|bytes| add(bytes));
+    sha.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}

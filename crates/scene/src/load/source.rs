@@ -1,0 +1,139 @@
+//! A scene file as text, its overrides, and where each key is written.
+
+use super::error::{LoadError, read_text};
+use super::overrides::Override;
+use crate::document::Document;
+use crate::fault::{Key, KeyPath, SceneFault, nearest};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use toml::de::{DeTable, DeValue};
+
+/// A scene file with its overrides.
+pub(crate) struct SceneSource {
+    pub(crate) path: PathBuf,
+    pub(crate) text: String,
+    overrides: Vec<(KeyPath, Override)>,
+}
+
+impl SceneSource {
+    /// Reads a scene file and applies `overrides` to it.
+    pub(crate) fn read(path: &Path, overrides: &[String]) -> Result<(Self, Document), LoadError> {
+        let text = read_text(path, "the scene file")?;
+        let malformed = |e: toml::de::Error| {
+            LoadError::malformed(
+                path,
+                &text,
+                e.span(),
+                format!("not valid TOML: {}", e.message()),
+                "correct the syntax",
+            )
+        };
+        let mut table: toml::Table = toml::from_str(&text).map_err(malformed)?;
+        let mut applied = Vec::new();
+        for argument in overrides {
+            let set = Override::parse(argument).map_err(|(message, remedy)| set_error(argument, message, remedy))?;
+            let path = set.apply(&mut table).map_err(|(message, remedy)| set_error(argument, message, remedy))?;
+            applied.push((path, set));
+        }
+        let source = Self { path: path.into(), text: text.clone(), overrides: applied };
+        let document = source.document(table)?;
+        Ok((source, document))
+    }
+
+    fn document(&self, table: toml::Table) -> Result<Document, LoadError> {
+        serde_path_to_error::deserialize(toml::Value::Table(table)).map_err(|error| {
+            let mut path = KeyPath(
+                error
+                    .path()
+                    .iter()
+                    .filter_map(|segment| match segment {
+                        serde_path_to_error::Segment::Seq { index } => Some(Key::Index(*index)),
+                        serde_path_to_error::Segment::Map { key } => Some(Key::Name(key.clone())),
+                        serde_path_to_error::Segment::Enum { variant } => Some(Key::Name(variant.clone())),
+                        serde_path_to_error::Segment::Unknown => None,
+                    })
+                    .collect(),
+            );
+            let (message, remedy) = explain(error.inner().message(), &mut path);
+            LoadError::fault(self, SceneFault::new(path, message, remedy))
+        })
+    }
+
+    /// Where `path` is written: file or override, its text, and the bytes meant. The deepest part that is written counts.
+    pub(crate) fn locate(&self, path: &KeyPath) -> (PathBuf, String, Option<Range<usize>>) {
+        let set = self.overrides.iter().rev().find(|(set, _)| {
+            let common = set.0.len().min(path.0.len());
+            set.0[..common] == path.0[..common] && path.0.len() >= set.0.len()
+        });
+        if let Some((_, set)) = set {
+            return (format!("--set {}", set.argument).into(), set.argument.clone(), Some(0..set.argument.len()));
+        }
+        (self.path.clone(), self.text.clone(), self.span(path))
+    }
+
+    /// Bytes of the file where the deepest part of `path` that is written there stands.
+    fn span(&self, path: &KeyPath) -> Option<Range<usize>> {
+        let file = DeTable::parse(&self.text).ok()?;
+        let mut span = None;
+        let mut here: Option<&DeValue<'_>> = None;
+        for (depth, key) in path.0.iter().enumerate() {
+            let table = if depth == 0 { Some(file.get_ref()) } else { here.and_then(DeValue::as_table) };
+            let next = match key {
+                Key::Name(name) => table.and_then(|t| t.get_key_value(name.as_str())).map(|(key, value)| {
+                    // A whole table in braces or brackets is shown by its key, a plain value by itself.
+                    let plain = !value.get_ref().is_table() && !value.get_ref().is_array();
+                    (if plain { value.span() } else { key.span() }, value)
+                }),
+                Key::Index(index) => {
+                    here.and_then(DeValue::as_array).and_then(|a| a.get(*index)).map(|value| (value.span(), value))
+                }
+            };
+            let Some((range, value)) = next else { break };
+            span = Some(range);
+            here = Some(value.get_ref());
+        }
+        span
+    }
+
+    /// The overrides as they were typed.
+    pub(crate) fn override_arguments(&self) -> impl Iterator<Item = &str> {
+        self.overrides.iter().map(|(_, set)| set.argument.as_str())
+    }
+}
+
+fn set_error(argument: &str, message: String, remedy: String) -> LoadError {
+    LoadError {
+        kind: super::LoadErrorKind::Scene,
+        path: format!("--set {argument}").into(),
+        source_text: Some(argument.into()),
+        span: Some(0..argument.len()),
+        message,
+        remedy,
+    }
+}
+
+/// Turns serde's message into ours; for an unknown key `path` gets to point at it.
+fn explain(message: &str, path: &mut KeyPath) -> (String, String) {
+    let message = message.trim();
+    let mut quoted = message.split('`').skip(1).step_by(2);
+    if message.starts_with("unknown field") {
+        let unknown = quoted.next().unwrap_or_default().to_owned();
+        let known: Vec<_> = quoted.collect();
+        if path.0.last() != Some(&Key::Name(unknown.clone())) {
+            path.0.push(Key::Name(unknown.clone()));
+        }
+        let owner = KeyPath(path.0[..path.0.len() - 1].to_vec()).to_string();
+        let whose = if owner.is_empty() { "of a scene".to_owned() } else { format!("of `{owner}`") };
+        return (format!("unknown key `{unknown}` {whose}"), nearest(&unknown, &known));
+    }
+    if message.starts_with("unknown variant") {
+        let unknown = quoted.next().unwrap_or_default().to_owned();
+        let known: Vec<_> = quoted.collect();
+        return (format!("`{path}` cannot be `{unknown}`"), nearest(&unknown, &known));
+    }
+    if message.starts_with("missing field") {
+        let missing = quoted.next().unwrap_or_default();
+        return (format!("`{path}` lacks the key `{missing}`"), format!("add `{missing} = ...`"));
+    }
+    (format!("`{path}`: {message}"), "see `fissure schema` for what each key holds".into())
+}

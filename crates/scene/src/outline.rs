@@ -1,0 +1,267 @@
+//! Rings: orientation, crossings, nesting, and the nearest place on them. Signs are exact.
+
+use crate::geometry::{Point, Region, orientation, segments_touch, signed_area};
+
+/// Takes off what repeats: points closer than `tolerance` to the one before, and a last point that repeats the first.
+pub(crate) fn clean_ring(points: &[Point], tolerance: f64) -> Vec<Point> {
+    let mut ring: Vec<Point> = Vec::with_capacity(points.len());
+    for &p in points {
+        if ring.last().is_none_or(|&q| far(p, q, tolerance)) {
+            ring.push(p);
+        }
+    }
+    while ring.len() > 1 && !far(ring[0], ring[ring.len() - 1], tolerance) {
+        ring.pop();
+    }
+    ring
+}
+
+/// Points that are not finite count as far, so that they stay and are reported.
+fn far(p: Point, q: Point, tolerance: f64) -> bool {
+    let distance = (p - q).norm();
+    distance > tolerance || !distance.is_finite()
+}
+
+/// The ring, turned to run counter-clockwise or clockwise.
+pub(crate) fn oriented(mut ring: Vec<Point>, counter_clockwise: bool) -> Vec<Point> {
+    if (signed_area(&ring) > 0.0) != counter_clockwise {
+        ring.reverse();
+    }
+    ring
+}
+
+/// An edge of a ring or a piece of a polyline.
+#[derive(Debug, Clone, Copy)]
+struct Edge {
+    a: Point,
+    b: Point,
+    line: usize,
+    index: usize,
+}
+
+/// The first place found where lines touch themselves or each other, other than at the joints of their edges.
+///
+/// `closed`: the lines are rings. Sweeps over x, so that it is fast when edges are short.
+pub(crate) fn find_crossing(lines: &[&[Point]], closed: bool) -> Option<Point> {
+    let mut edges = Vec::new();
+    for (line, points) in lines.iter().enumerate() {
+        let count = if closed { points.len() } else { points.len().saturating_sub(1) };
+        edges.extend((0..count).map(|i| Edge { a: points[i], b: points[(i + 1) % points.len()], line, index: i }));
+    }
+    edges.sort_by(|e, f| e.a.x.min(e.b.x).total_cmp(&f.a.x.min(f.b.x)));
+    let mut open: Vec<Edge> = Vec::new();
+    for e in edges {
+        let left = e.a.x.min(e.b.x);
+        open.retain(|f| f.a.x.max(f.b.x) >= left);
+        for f in &open {
+            let length = lines[e.line].len();
+            if e.a.y.max(e.b.y) >= f.a.y.min(f.b.y)
+                && f.a.y.max(f.b.y) >= e.a.y.min(e.b.y)
+                && touch_wrongly(&e, f, length, closed)
+            {
+                return Some(meeting_point(&e, f));
+            }
+        }
+        open.push(e);
+    }
+    None
+}
+
+/// Whether two edges share more than the joint that neighbours share.
+fn touch_wrongly(e: &Edge, f: &Edge, length: usize, closed: bool) -> bool {
+    let follows = |e: &Edge, f: &Edge| {
+        e.line == f.line && (e.index + 1 == f.index || (closed && f.index == 0 && e.index + 1 == length))
+    };
+    let (first, second) = match (follows(e, f), follows(f, e)) {
+        (true, true) => return false, // A ring of two points: caught by its area.
+        (true, false) => (e, f),
+        (false, true) => (f, e),
+        (false, false) => return segments_touch(e.a, e.b, f.a, f.b),
+    };
+    // Neighbours touch wrongly when the second runs back over the first.
+    orientation(first.a, first.b, second.b) == 0.0 && (first.b - first.a).dot(&(second.b - second.a)) < 0.0
+}
+
+fn meeting_point(e: &Edge, f: &Edge) -> Point {
+    let (d, g, w) = (e.b - e.a, f.b - f.a, f.a - e.a);
+    let determinant = d.x * g.y - d.y * g.x;
+    if determinant == 0.0 {
+        // Collinear: an end point that lies on the other edge.
+        return if (e.a - f.a).dot(&(e.a - f.b)) <= 0.0 { e.a } else { e.b };
+    }
+    e.a + d * ((w.x * g.y - w.y * g.x) / determinant)
+}
+
+/// Which rings of a drawing bound filled area.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum FillRule {
+    /// Filled where the rings turn around a point a number of times other than zero.
+    NonZero,
+    /// Filled where they turn around it an odd number of times.
+    EvenOdd,
+}
+
+/// Sorts rings into regions by what lies inside what. The rings must not touch (see [`find_crossing`]).
+pub(crate) fn nest_rings(rings: &[Vec<Point>], rule: FillRule) -> Vec<Region> {
+    let sign = |ring: &[Point]| if signed_area(ring) > 0.0 { 1_i64 } else { -1 };
+    let filled = |winding: i64| match rule {
+        FillRule::NonZero => winding != 0,
+        FillRule::EvenOdd => winding % 2 != 0,
+    };
+    let simple: Vec<Region> =
+        rings.iter().map(|r| Region { exterior: oriented(r.clone(), true), holes: Vec::new() }).collect();
+    // A ring lies in another as a whole or not at all, so one point decides.
+    let around = |i: usize| (0..rings.len()).filter(move |&j| j != i);
+    let containers: Vec<Vec<usize>> = (0..rings.len())
+        .map(|i| around(i).filter(|&j| rings[i].first().is_some_and(|&p| simple[j].contains(p))).collect())
+        .collect();
+    let mut regions: Vec<(usize, Region)> = Vec::new();
+    let mut holes = Vec::new();
+    for (i, ring) in rings.iter().enumerate() {
+        let outside: i64 = containers[i].iter().map(|&j| sign(&rings[j])).sum();
+        match (filled(outside), filled(outside + sign(ring))) {
+            (false, true) => regions.push((i, simple[i].clone())),
+            (true, false) => holes.push(i),
+            _ => {}
+        }
+    }
+    for hole in holes {
+        let owner = regions
+            .iter_mut()
+            .filter(|(i, _)| containers[hole].contains(i))
+            .min_by(|(i, _), (j, _)| simple[*i].area().total_cmp(&simple[*j].area()));
+        if let Some((_, region)) = owner {
+            region.holes.push(oriented(rings[hole].clone(), false));
+        }
+    }
+    regions.into_iter().map(|(_, region)| region).collect()
+}
+
+/// A place on a ring of a region.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct RingPlace {
+    /// Ring: 0 the exterior, then the holes.
+    pub(crate) ring: usize,
+    /// Edge of the ring, by its first point.
+    pub(crate) edge: usize,
+    /// Where.
+    pub(crate) point: Point,
+    /// Distance from the point asked for.
+    pub(crate) distance: f64,
+}
+
+/// The place on the rings of `region` nearest to `point`.
+pub(crate) fn nearest_on_rings(region: &Region, point: Point) -> Option<RingPlace> {
+    let mut best: Option<RingPlace> = None;
+    for (ring, points) in region.rings().enumerate() {
+        for edge in 0..points.len() {
+            let on = nearest_on_segment(points[edge], points[(edge + 1) % points.len()], point);
+            let distance = (on - point).norm();
+            if best.is_none_or(|b| distance < b.distance) {
+                best = Some(RingPlace { ring, edge, point: on, distance });
+            }
+        }
+    }
+    best
+}
+
+/// The point of a segment nearest to `point`; an end point to the bit when that is nearest.
+pub(crate) fn nearest_on_segment(a: Point, b: Point, point: Point) -> Point {
+    let along = b - a;
+    let t = (point - a).dot(&along) / along.norm_squared();
+    if t.is_nan() || t <= 0.0 {
+        a
+    } else if t >= 1.0 {
+        b
+    } else {
+        a + along * t
+    }
+}
+
+/// Makes `place` a corner of its ring, unless it is one already; the corner is `place.point` to the bit.
+pub(crate) fn insert_corner(region: &mut Region, place: &RingPlace) {
+    let ring = if place.ring == 0 { &mut region.exterior } else { &mut region.holes[place.ring - 1] };
+    if !ring.contains(&place.point) {
+        ring.insert(place.edge + 1, place.point);
+    }
+}
+
+/// Corners of a circle, counter-clockwise, such that chords leave it by at most `tolerance`; a multiple of 4, at least 16.
+pub(crate) fn circle_ring(center: Point, radius: f64, tolerance: f64) -> Vec<Point> {
+    // Sagitta of a chord: r (1 - cos(pi / n)).
+    let angle = (1.0 - tolerance / radius).clamp(-1.0, 1.0).acos();
+    let quarter = (std::f64::consts::FRAC_PI_4 / angle).ceil();
+    let quarter = if quarter.is_finite() { quarter.clamp(4.0, 1024.0) as usize } else { 4 };
+    let point = |i: usize| {
+        // Whole quarters exactly, so that a circle is as symmetric as its number of corners allows.
+        let (s, c) = (std::f64::consts::FRAC_PI_2 * (i % quarter) as f64 / quarter as f64).sin_cos();
+        let (x, y) = [(c, s), (-s, c), (-c, -s), (s, -c)][i / quarter];
+        Point::new(center.x + radius * x, center.y + radius * y)
+    };
+    (0..4 * quarter).map(point).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use proptest::prelude::*;
+
+    fn square(x: f64, y: f64, half: f64) -> Vec<Point> {
+        [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+            .iter()
+            .map(|(u, v)| Point::new(x + half * u, y + half * v))
+            .collect()
+    }
+
+    #[test]
+    fn crossings_are_found_and_joints_are_not() {
+        let bow = [(0.0, 0.0), (2.0, 2.0), (2.0, 0.0), (0.0, 2.0)].map(|(x, y)| Point::new(x, y));
+        assert_eq!(find_crossing(&[&bow], true), Some(Point::new(1.0, 1.0)));
+        assert_eq!(find_crossing(&[&square(0.0, 0.0, 1.0)], true), None);
+        let spike = [(0.0, 0.0), (2.0, 0.0), (1.0, 0.0)].map(|(x, y)| Point::new(x, y));
+        assert!(find_crossing(&[&spike], false).is_some());
+        assert!(find_crossing(&[&square(0.0, 0.0, 1.0), &square(2.0, 0.0, 1.0)], true).is_some());
+    }
+
+    #[test]
+    fn circles_keep_their_tolerance() {
+        let ring = circle_ring(Point::new(1.0, 2.0), 3.0, 0.01);
+        let sagitta = 3.0 * (1.0 - (std::f64::consts::PI / ring.len() as f64).cos());
+        assert!(sagitta <= 0.01 && sagitta > 0.005, "{sagitta}");
+        assert!(signed_area(&ring) > 0.0);
+    }
+
+    proptest! {
+        /// Truth: the fill rule itself. A point is in the nested regions exactly when its winding number says so.
+        #[test]
+        fn nesting_fills_what_the_rule_fills(depths in prop::collection::vec((0_usize..3, any::<bool>()), 1..6),
+                                             even_odd in any::<bool>()) {
+            // Three towers of squares inside squares, each ring turned at random.
+            let mut heights = [0_usize; 3];
+            let mut rings = Vec::new();
+            for (tower, counter_clockwise) in depths {
+                let half = 10.0 - heights[tower] as f64;
+                heights[tower] += 1;
+                rings.push(oriented(square(30.0 * tower as f64, 0.0, half), counter_clockwise));
+            }
+            let rule = if even_odd { FillRule::EvenOdd } else { FillRule::NonZero };
+            let regions = nest_rings(&rings, rule);
+            for region in &regions {
+                prop_assert!(signed_area(&region.exterior) > 0.0);
+                prop_assert!(region.holes.iter().all(|h| signed_area(h) < 0.0));
+            }
+            for tower in 0..3 {
+                for step in 0..12 {
+                    let p = Point::new(30.0 * tower as f64 + 10.5 - step as f64, 0.25);
+                    let winding: i64 = rings.iter().map(|r| {
+                        let inside = Region { exterior: oriented(r.clone(), true), holes: vec![] }.contains(p);
+                        if !inside { 0 } else if signed_area(r) > 0.0 { 1 } else { -1 }
+                    }).sum();
+                    let filled = if even_odd { winding % 2 != 0 } else { winding != 0 };
+                    prop_assert_eq!(regions.iter().filter(|r| r.contains(p)).count(), usize::from(filled));
+                }
+            }
+        }
+    }
+}

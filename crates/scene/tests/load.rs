@@ -1,0 +1,265 @@
+//! Scenes as users write them: what loads, and what each mistake is told.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use fissure_scene::{
+    BoxSide, ColliderShape, Kernel, LoadErrorKind, LoadKind, Point, Scene, Selection, SolverPreset, Transfer, load,
+    schema, solver_preset, template,
+};
+use std::path::PathBuf;
+use tempfile::TempDir;
+
+/// A folder with a scene and, if given, a drawing beside it.
+struct Folder(TempDir);
+
+impl Folder {
+    fn new(scene: &str, drawing: Option<&str>) -> Self {
+        let folder = Self(tempfile::tempdir().unwrap());
+        std::fs::write(folder.path(), scene).unwrap();
+        if let Some(svg) = drawing {
+            std::fs::write(folder.0.path().join("drawing.svg"), svg).unwrap();
+        }
+        folder
+    }
+    fn path(&self) -> PathBuf {
+        self.0.path().join("scene.toml")
+    }
+}
+
+fn scene_with(text: &str, drawing: Option<&str>, set: &[&str]) -> Result<Scene, fissure_scene::LoadError> {
+    let folder = Folder::new(text, drawing);
+    load(&folder.path(), &set.iter().map(|s| s.to_string()).collect::<Vec<_>>())
+}
+
+const PLATE: &str =
+    "[[body]]\nname = 'plate'\nmaterial = 'pmma'\nshape = { rectangle = { min = [-10, -10], max = [10, 10] } }\n";
+
+#[test]
+fn the_template_loads() {
+    let scene = scene_with(template(), None, &[]).unwrap();
+    assert_eq!(scene.bodies[0].name, "plate");
+    assert_eq!((scene.particle_spacing, scene.cell_size), (0.25, 0.5));
+    assert_eq!((scene.cracks[0].start_live, scene.cracks[0].end_live), (false, true));
+    assert_eq!((scene.frames.first, scene.frames.last, scene.frames.rate), (1, 48, 2400.0));
+    // The mouth is a corner of the outline to the bit.
+    assert!(scene.bodies[0].region.exterior.contains(&scene.cracks[0].points[0]));
+    assert_eq!(scene.loads[0].selection, Selection::Edge { side: BoxSide::Top, body: None });
+    assert_eq!(scene.hash.len(), 64);
+}
+
+#[test]
+fn defaults_yield_to_the_file_and_the_file_to_overrides() {
+    let scene = scene_with(PLATE, None, &[]).unwrap();
+    let (solver, growth) = solver_preset(SolverPreset::Standard);
+    assert_eq!((scene.solver, scene.growth), (solver, growth));
+    assert_eq!((scene.particle_spacing, scene.output.thickness), (20.0 / 128.0, 2.0));
+
+    let text = format!("{PLATE}[solver]\npreset = 'thesis'\ncourant = 0.5\ntransfer = {{ flip = 0.9 }}\n");
+    let scene =
+        scene_with(&text, None, &["solver.courant=0.25", "body.plate.material=glass", "growth.bending=2"]).unwrap();
+    assert_eq!(scene.solver.kernel, Kernel::Cubic);
+    assert_eq!(scene.solver.transfer, Transfer::Flip(0.9));
+    assert_eq!((scene.solver.courant, scene.growth.bending), (0.25, 2.0));
+    assert_eq!(scene.materials[scene.bodies[0].material].young_modulus, 70e9);
+
+    // Overrides are part of the hash.
+    let folder = Folder::new(PLATE, None);
+    let hash = |set: &[String]| load(&folder.path(), set).unwrap().hash;
+    assert_ne!(hash(&[]), hash(&["gravity=[0, -9.81]".into()]));
+    assert_eq!(hash(&[]), hash(&[]));
+}
+
+#[test]
+fn materials_build_on_each_other() {
+    let text = format!(
+        "{PLATE}[[material]]\nname = 'pmma'\ndensity = 1000\n[[material]]\nname = 'ice'\nbase = 'pmma'\nplasticity = {{ hardening = 5 }}\n"
+    );
+    let scene = scene_with(&text, None, &["body.plate.material=ice", "material.glass.density=9"]).unwrap();
+    let ice = &scene.materials[scene.bodies[0].material];
+    assert_eq!((ice.density, ice.young_modulus), (1000.0, 2.94e9));
+    assert_eq!(ice.plasticity.unwrap().hardening, 5.0);
+    assert_eq!(ice.plasticity.unwrap().critical_stretch, 7.5e-3);
+    assert_eq!(scene.materials.iter().find(|m| m.name == "glass").unwrap().density, 9.0);
+}
+
+#[test]
+fn everything_inline_is_understood() {
+    let text = format!(
+        r#"{PLATE}
+velocity = [1, 2]
+angular_velocity = 3
+[[collider]]
+name = "floor"
+shape = {{ half_plane = {{ point = [0, -12], normal = [0, 2] }} }}
+contact = "slip"
+friction = inf
+keyframes = [{{ time = 0 }}, {{ time = 1, position = [0, 3], angle = 90 }}]
+[[collider]]
+shape = {{ polygon = [[20, 0], [22, 0], [22, 2], [20, 2]] }}
+[[load]]
+select = {{ near = [[0, 0]], radius = 1 }}
+per_point = [{{ at = [0, 0], force = [1, 0] }}]
+[[support]]
+select = {{ edge = "left", body = "plate" }}
+fix = "x"
+[[support]]
+velocity_y = -2.0
+curve = [[0, 0], [1, 1]]
+[[initial_velocity]]
+select = {{ region = {{ circle = {{ radius = 2 }} }} }}
+velocity = [0, 1]
+"#
+    );
+    let scene = scene_with(&text, None, &["solver.time_step=1e-6", "frames.range=1001-1010"]).unwrap();
+    let floor = &scene.colliders[0];
+    assert_eq!(floor.shape, ColliderShape::HalfPlane { normal: fissure_scene::Vector::y() });
+    assert_eq!(floor.keyframes[1].1.position, Point::new(0.0, -9.0));
+    assert_eq!(floor.keyframes[1].1.angle, std::f64::consts::FRAC_PI_2);
+    assert_eq!(floor.friction, f64::INFINITY);
+    assert_eq!(scene.colliders[1].keyframes[0].1.position, Point::new(21.0, 1.0));
+    assert_eq!(scene.colliders[1].name, "collider-2");
+    assert!(matches!(scene.loads[0].kind, LoadKind::PerPoint(ref f) if f.len() == 1));
+    assert_eq!(scene.supports[0].velocity, [Some(0.0), None]);
+    assert_eq!(scene.supports[1].velocity, [None, Some(-2.0)]);
+    assert_eq!(scene.bodies[0].velocities.len(), 2);
+    assert!(scene.bodies[0].velocities[0].center.coords.norm() < 1e-12);
+    assert_eq!(scene.solver.time_step, Some(1e-6));
+    assert_eq!((scene.frames.first, scene.frames.count()), (1001, 10));
+    // A take keeps the scene as JSON, infinite friction included.
+    let json = serde_json::to_string(&scene).unwrap();
+    assert_eq!(serde_json::from_str::<Scene>(&json).unwrap(), scene);
+}
+
+const LINE: &str = "[[crack]]\nname = 'notch'\nline = [[-10, 0], [-5, 0]]\n";
+
+#[test]
+fn cracks_are_cut_at_the_outline_and_guides_at_the_tip() {
+    let text = format!(
+        "{PLATE}[[crack]]\nname = 'notch'\nline = {{ points = [[-13, 1], [-5, 0]] }}\nguide = 'path'\n\
+         [[guide]]\nname = 'path'\nline = [[-13, 1], [-9, 0.5], [-5, 0], [0, 2], [10, 0]]\n"
+    );
+    let scene = scene_with(&text, None, &[]).unwrap();
+    let crack = &scene.cracks[0];
+    assert_eq!(crack.points[0].x, -10.0);
+    assert!((crack.points[0].y - 0.625).abs() < 1e-12);
+    assert!(scene.bodies[0].region.exterior.contains(&crack.points[0]));
+    assert_eq!(scene.bodies[0].region.exterior.len(), 5);
+    let guide = crack.end_guide.as_ref().unwrap();
+    assert_eq!(guide.points, [(-5.0, 0.0), (0.0, 2.0), (10.0, 0.0)].map(|(x, y)| Point::new(x, y)));
+    assert!(scene_with(&format!("{PLATE}{LINE}"), None, &["crack.0.tips=both"]).is_err());
+    assert!(!scene_with(&format!("{PLATE}{LINE}"), None, &["crack.notch.tips=none"]).unwrap().cracks[0].end_live);
+}
+
+/// Each mistake: the scene, overrides, the kind of error, the line it is shown at, and words its message and remedy must have.
+#[test]
+fn every_mistake_is_told_with_line_value_and_remedy() {
+    use LoadErrorKind::{InputFile, Scene};
+    let body = "[[body]]\nname = 'a'\nmaterial = 'pmma'\n";
+    let plate = |rest: &str| format!("{PLATE}{rest}");
+    let own = |rest: &str| format!("{body}{rest}");
+    let guide = |line: &str| format!("{PLATE}{LINE}guide = 'path'\n[[guide]]\nname = 'path'\nline = {line}\n");
+    #[rustfmt::skip]
+    let cases: Vec<(String, &str, LoadErrorKind, Option<usize>, &[&str])> = vec![
+        ("[[body]\n".into(), "", InputFile, Some(1), &["TOML"]),
+        (plate("[solver]\npresett = 'thesis'\n"), "", Scene, Some(6), &["unknown key `presett`", "`solver`", "did you mean `preset`?"]),
+        (plate("[solver]\npreset = 'thesiss'\n"), "", Scene, Some(6), &["thesiss", "did you mean `thesis`?"]),
+        (plate(""), "solver.presett=thesis", Scene, Some(1), &["unknown key `presett`", "did you mean `preset`?", "--set"]),
+        (plate(""), "body.plat.material=glass", Scene, Some(1), &["no item `plat`", "did you mean `plate`?"]),
+        (plate(""), "crack.0.tips=both", Scene, Some(1), &["`crack`", "0 items"]),
+        (plate(""), "nonsense", Scene, Some(1), &["no `=`", "--set"]),
+        (plate("[frames]\nrate = 'fast'\n"), "", Scene, Some(6), &["frames.rate", "fast"]),
+        ("name = 'x'\n".into(), "", Scene, None, &["no body", "[[body]]"]),
+        ("[[body]]\nname = 'a'\nmaterial = 'pmma'\n".into(), "", Scene, Some(1), &["lacks the key `shape`"]),
+        (own("shape = { rectangle = { min = [0, 0, 0], max = [1, 1] } }\n"), "", Scene, Some(4), &["body[0].shape.rectangle.min", "3"]),
+        (own("shape = { rectangle = { min = [1, 0], max = [0, 1] } }\n"), "", Scene, Some(4), &["[1.0, 0.0]", "lower left"]),
+        (own("shape = { circle = { radius = -2 } }\n"), "", Scene, Some(4), &["radius", "-2", "above 0"]),
+        (own("shape = { circle = { radius = nan } }\n"), "", Scene, Some(4), &["radius", "NaN"]),
+        (own("shape = { polygon = [[0, 0], [2, 2], [2, 0], [0, 2]] }\n"), "", Scene, Some(4), &["`a`", "crosses", "(1, 1)"]),
+        (own("shape = { polygon = [[0, 0], [2, 2]] }\n"), "", Scene, Some(4), &["2 corners", "at least 3"]),
+        (own("shape = { polygon = [[0, 0], [2, 2], [4, 4]] }\n"), "", Scene, Some(4), &["no area"]),
+        (own("shape = { polygon = [[0, 0], [2, 0], [inf, 4]] }\n"), "", Scene, Some(4), &["inf", "finite"]),
+        (own("shape = { polygon = { exterior = [[0, 0], [4, 0], [0, 4]], holes = [[[5, 5], [6, 5], [5, 6]]] } }\n"), "", Scene, Some(4), &["hole", "(5,"]),
+        (own("shape = { svg = 'a' }\n"), "", Scene, Some(4), &["drawing"]),
+        (plate(""), "body.plate.material=plastic", Scene, Some(1), &["`plastic`", "`pmma`"]),
+        (plate("[[material]]\nname = 'x'\nyoung_modulus = 1e9\n"), "", Scene, Some(5), &["`x`", "poisson_ratio", "base"]),
+        (plate("[[material]]\nname = 'pmma'\nyoung_modulus = -1e9\n"), "", Scene, Some(7), &["Young", "`pmma`", "-1000000000", "above 0"]),
+        (plate("[[material]]\nname = 'pmma'\ndensity = nan\n"), "", Scene, Some(7), &["density", "NaN"]),
+        (plate("[[material]]\nname = 'pmma'\npoisson_ratio = 0.5\n"), "", Scene, Some(7), &["0.5", "below 0.5"]),
+        (plate("[[material]]\nname = 'a'\nbase = 'b'\n[[material]]\nname = 'b'\nbase = 'a'\n"), "", Scene, None, &["circle"]),
+        (plate("[output]\nthickness = 0\n"), "", Scene, Some(6), &["thickness", "0", "above 0"]),
+        (plate("[output]\nthickness = -1\n"), "", Scene, Some(6), &["-1"]),
+        (plate("[grid]\nparticle_spacing = 30\n"), "", Scene, Some(6), &["30", "`plate`", "20", "at most 5 m"]),
+        (plate("[grid]\nparticle_spacing = 0\n"), "", Scene, Some(6), &["spacing", "above 0"]),
+        (plate("[grid]\nparticle_spacing = 1e-9\n"), "", Scene, Some(6), &["0.000000001", "usual"]),
+        (plate("[frames]\nrate = 0\n"), "", Scene, Some(6), &["rate", "0"]),
+        (plate("[frames]\nfirst = 5\nlast = 4\n"), "", Scene, Some(7), &["4", "5"]),
+        (plate("[frames]\nrange = '1..4'\n"), "", Scene, Some(6), &["1..4", "1-48"]),
+        (plate("[solver]\ncourant = 1.5\n"), "", Scene, Some(6), &["1.5", "at most 1"]),
+        (plate("[[load]]\nforce = [1, 0]\ncurve = [[0, 0], [2, 1], [1, 0]]\n"), "", Scene, Some(7), &["rise", "1 s", "2 s"]),
+        (plate("[[load]]\ntraction = [1, 0]\n"), "", Scene, Some(6), &["edge"]),
+        (plate("[[load]]\nforce = [1, 0]\ntraction = [1, 0]\n"), "", Scene, Some(5), &["exactly one"]),
+        (plate("[[support]]\nselect = { body = 'plat' }\nfix = 'x'\n"), "", Scene, Some(6), &["`plat`", "did you mean `plate`?"]),
+        (plate("[[collider]]\nshape = { disc = { center = [0, 0], radius = 0 } }\n"), "", Scene, Some(6), &["radius", "collider-1"]),
+        (plate("[[collider]]\nshape = { disc = { center = [0, 0], radius = 1 } }\nkeyframes = [{ time = 1 }, { time = 1 }]\n"), "", Scene, Some(7), &["rise"]),
+        (plate("[[body]]\nname = 'b'\nmaterial = 'pmma'\nshape = { circle = { radius = 1 } }\n"), "", Scene, Some(8), &["overlaps", "`plate`", "`b`"]),
+        (plate("[[body]]\nname = 'plate'\nmaterial = 'pmma'\nshape = { circle = { center = [30, 0], radius = 1 } }\n"), "", Scene, Some(6), &["two", "`plate`"]),
+        (plate("[[crack]]\nline = [[20, 0], [30, 0]]\n"), "", Scene, Some(6), &["`crack-1`", "(20, 0)", "outside"]),
+        (plate("[[crack]]\nline = [[1, 1], [1, 1]]\n"), "", Scene, Some(6), &["zero length", "(1, 1)"]),
+        (plate("[[crack]]\nline = [[0, 0], [2, 2], [2, 0], [0, 2]]\n"), "", Scene, Some(6), &["crosses itself", "(1, 1)"]),
+        (plate("[[crack]]\nline = [[0, 0], [12, 0], [12, 3], [0, 3]]\n"), "", Scene, Some(6), &["leaves", "`plate`", "(10, 0)"]),
+        (plate("[[crack]]\nline = [[0, 0], [nan, 2]]\n"), "", Scene, Some(6), &["NaN"]),
+        (plate("[[crack]]\nline = [[-10, 0], [-5, 0]]\ntips = 'start'\n"), "", Scene, Some(7), &["start", "outline", "(-10, 0)"]),
+        (plate("[[crack]]\nline = [[-5, 0], [5, 0]]\n[[crack]]\nline = [[0, -5], [0, 5]]\n"), "", Scene, Some(8), &["crack-1", "crack-2", "(0, 0)"]),
+        (plate(&format!("{LINE}guide = 'pth'\n[[guide]]\nname = 'path'\nline = [[-5, 0], [10, 0]]\n")), "", Scene, Some(8), &["`pth`", "did you mean `path`?"]),
+        (guide("[[-3, 0], [10, 0]]"), "", Scene, Some(11), &["does not start at the tip", "(-5, 0)", "2 m away"]),
+        (guide("[[-10, 5], [-5, 0], [10, 0]]"), "", Scene, Some(11), &["leaves the crack"]),
+    ];
+    let mut wrong = Vec::new();
+    for (text, set, kind, line, words) in cases {
+        let overrides: Vec<&str> = if set.is_empty() { vec![] } else { vec![set] };
+        let Err(error) = scene_with(&text, None, &overrides) else {
+            wrong.push(format!("accepted: {text}"));
+            continue;
+        };
+        let told = error.to_string();
+        let missing: Vec<_> = words.iter().filter(|word| !told.contains(**word)).collect();
+        let shown = error.source_text.as_deref().and_then(|t| t.get(error.span.clone().unwrap_or(0..0)));
+        if error.kind != kind
+            || (line.is_some() && error.line() != line)
+            || !missing.is_empty()
+            || error.remedy.len() < 6
+            || shown.is_none()
+        {
+            wrong.push(format!(
+                "{told}\nlacks {missing:?}, is {:?} at line {:?}, not {line:?}, of\n{text}",
+                error.kind,
+                error.line()
+            ));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn a_missing_file_is_named() {
+    let error = load(&PathBuf::from("no/such/scene.toml"), &[]).unwrap_err();
+    assert_eq!(error.kind, LoadErrorKind::InputFile);
+    assert!(error.to_string().contains("no/such/scene.toml"), "{error}");
+}
+
+/// Truth: the keys the template uses are in the schema, with descriptions.
+#[test]
+fn the_schema_describes_every_key() {
+    let schema = schema();
+    for table in ["body", "crack", "load", "grid", "frames", "output", "solver"] {
+        assert!(schema["properties"][table]["description"].is_string(), "{table}");
+    }
+    let definitions = schema["$defs"].as_object().unwrap();
+    assert!(definitions.len() > 20);
+    for (name, definition) in definitions {
+        let Some(properties) = definition["properties"].as_object() else { continue };
+        assert_eq!(definition["additionalProperties"], serde_json::json!(false), "{name}");
+        for (key, property) in properties {
+            assert!(property["description"].is_string(), "{name}.{key} has no description");
+        }
+    }
+}
