@@ -1,2 +1,58 @@
-//! f
-fn main() {}
+//! The program `fissure`: from a scene to cracked mesh sequences. The numbers it ends with are in [`exit::Exit`].
+
+mod args;
+mod check;
+mod exit;
+mod failure;
+mod folder;
+mod frame_set;
+mod interrupt;
+mod meshes;
+mod new;
+mod post;
+mod progress;
+mod report;
+mod run;
+mod scene_file;
+mod schema;
+mod sim;
+mod solve;
+mod threads;
+mod workers;
+
+use args::{Arguments, Command};
+use clap::Parser;
+use exit::Exit;
+use failure::Failure;
+use report::Report;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version come this way too. Nobody is left to tell when the pipe is closed.
+            drop(error.print());
+            return if error.use_stderr() { Exit::Usage } else { Exit::Done }.into();
+        }
+    };
+    let report = Report::new(arguments.talk);
+    match execute(&arguments.command, &report) {
+        Ok(exit) => exit.into(),
+        Err(failure) => {
+            report.error(&failure);
+            failure.exit.into()
+        }
+    }
+}
+
+fn execute(command: &Command, report: &Report) -> Result<Exit, Failure> {
+    match command {
+        Command::New(arguments) => new::new(arguments, report),
+        Command::Check(arguments) => check::check(arguments, report),
+        Command::Run(arguments) => run::run(arguments, report),
+        Command::Sim(arguments) => sim::sim(arguments, report),
+        Command::Post(arguments) => post::post(arguments, report),
+        Command::Schema => schema::schema(),
+    }
+}

@@ -1,0 +1,231 @@
+//! What was typed. What it means is decided by the stages.
+
+use crate::frame_set::FrameSet;
+use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
+use fissure_scene::{Format, Part, UpAxis};
+use std::path::PathBuf;
+
+/// Cracked mesh sequences from a drawing.
+#[derive(Debug, Parser)]
+#[command(
+    name = "fissure",
+    version,
+    about = "Draw a body and its cracks; get cracked, extruded mesh sequences",
+    after_help = "Examples:\n  fissure new my-crack             write a scene to start from\n  fissure run my-crack/scene.toml  simulate it and write its meshes\n\n\
+                  Exit codes: 0 ok, 2 usage or scene, 3 file, 4 numerical failure (do not retry), 75 interrupted (run again to resume)",
+    subcommand_required = true,
+    arg_required_else_help = true,
+    max_term_width = 100
+)]
+pub(crate) struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub(crate) command: Command,
+    /// How to speak about it.
+    #[command(flatten)]
+    pub(crate) talk: TalkArguments,
+}
+
+/// The stages.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Write a commented scene that runs.
+    #[command(after_help = "Example:\n  fissure new my-crack && fissure run my-crack/scene.toml")]
+    New(NewArguments),
+    /// Validate a scene and say what it will cost, without running it.
+    #[command(after_help = "Example:\n  fissure check examples/pull/scene.toml --set grid.particle_spacing=0.0625")]
+    Check(CheckArguments),
+    /// Simulate a scene and write its meshes while the solver goes on.
+    ///
+    /// Interrupted (Ctrl-C), the same command resumes.
+    #[command(after_help = "Example:\n  fissure run examples/pull/scene.toml --formats glb,ply --output pull-meshes")]
+    Run(RunArguments),
+    /// Simulate a scene and write the take only; `fissure post` makes meshes of it later.
+    ///
+    /// Interrupted (Ctrl-C), the same command resumes.
+    #[command(after_help = "Example:\n  fissure sim examples/pull/scene.toml && fissure post out/pull/pull.take")]
+    Sim(SimArguments),
+    /// Write the meshes of a take without simulating again.
+    #[command(after_help = "Example:\n  fissure post out/pull/pull.take --thickness 0.2 --formats glb,ply --frames 1-45x2")]
+    Post(PostArguments),
+    /// Print the JSON schema of scene files, for editors.
+    #[command(after_help = "Example:\n  fissure schema > scene.schema.json")]
+    Schema,
+}
+
+/// Arguments of `new`.
+#[derive(Debug, Args)]
+pub(crate) struct NewArguments {
+    /// Folder to write `scene.toml` into; made when missing.
+    #[arg(default_value = ".")]
+    pub(crate) directory: PathBuf,
+}
+
+/// The scene and what overrides it.
+#[derive(Debug, Args)]
+pub(crate) struct SceneArguments {
+    /// The scene file.
+    pub(crate) scene: PathBuf,
+    /// Override one key of the scene file; may be repeated. The value is TOML; a bare word is a string.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(crate) overrides: Vec<String>,
+}
+
+/// Where a take goes and what to do with one that is there.
+#[derive(Debug, Args)]
+pub(crate) struct TakeArguments {
+    /// Folder to write into [default: out/NAME, NAME being the scene's name].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+    /// Start afresh: remove the take and the meshes of this scene's name that are in the output folder.
+    #[arg(long)]
+    pub(crate) overwrite: bool,
+    /// Threads to compute with [default: one per core]. The results do not depend on it.
+    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+}
+
+/// What meshes to write.
+#[derive(Debug, Clone, Default, Args)]
+pub(crate) struct MeshArguments {
+    /// Mesh formats [default: as in the scene].
+    #[arg(long, value_name = "FORMAT,..", value_delimiter = ',', value_parser = parse_format)]
+    pub(crate) formats: Vec<Format>,
+    /// Parts of the scene: cracked, body, faces, collider, particles [default: as in the scene].
+    #[arg(long, value_name = "PART,..", value_delimiter = ',', value_parser = parse_part)]
+    pub(crate) parts: Vec<Part>,
+    /// Thickness of the solids in metres [default: as in the scene].
+    #[arg(long, value_name = "METRES", value_parser = parse_thickness)]
+    pub(crate) thickness: Option<f64>,
+    /// Up axis of PLY files, y or z; glTF is always y up [default: as in the scene].
+    #[arg(long, value_name = "AXIS", value_parser = parse_up)]
+    pub(crate) up: Option<UpAxis>,
+}
+
+/// Arguments of `check`.
+#[derive(Debug, Args)]
+pub(crate) struct CheckArguments {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+}
+
+/// Arguments of `run`.
+#[derive(Debug, Args)]
+pub(crate) struct RunArguments {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+    #[command(flatten)]
+    pub(crate) take: TakeArguments,
+    #[command(flatten)]
+    pub(crate) mesh: MeshArguments,
+    /// Frames to write meshes of, e.g. `1-45x2` (every second) or `1,10,20-30`; simulation stops at the last of them.
+    #[arg(long, value_name = "RANGE")]
+    pub(crate) frames: Option<FrameSet>,
+}
+
+/// Arguments of `sim`.
+#[derive(Debug, Args)]
+pub(crate) struct SimArguments {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+    #[command(flatten)]
+    pub(crate) take: TakeArguments,
+    /// Frames wanted, e.g. `1-45`; simulation stops at the last of them (the take holds all frames up to it).
+    #[arg(long, value_name = "RANGE")]
+    pub(crate) frames: Option<FrameSet>,
+}
+
+/// Arguments of `post`.
+#[derive(Debug, Args)]
+pub(crate) struct PostArguments {
+    /// The take: a folder ending in `.take`.
+    pub(crate) take: PathBuf,
+    #[command(flatten)]
+    pub(crate) mesh: MeshArguments,
+    /// Frames to write meshes of, e.g. `1-45x2` or `1,10,20-30` [default: all].
+    #[arg(long, value_name = "RANGE")]
+    pub(crate) frames: Option<FrameSet>,
+    /// Folder to write into [default: the folder that holds the take].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+    /// Threads to compute with [default: one per core].
+    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+}
+
+/// How to speak.
+#[derive(Debug, Clone, Copy, Args)]
+pub(crate) struct TalkArguments {
+    /// Form of progress and messages on standard error: `text`, or `json`, one object per line.
+    #[arg(long, global = true, value_enum, hide_possible_values = true, default_value_t = LogFormat::Text, value_name = "FORM")]
+    pub(crate) log: LogFormat,
+    /// No progress; only errors.
+    #[arg(long, global = true)]
+    pub(crate) quiet: bool,
+}
+
+/// Form of messages.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum LogFormat {
+    /// For people.
+    Text,
+    /// For programs.
+    Json,
+}
+
+/// Reads one of the words that the scene file uses too, so that the two cannot differ.
+fn parse_word<T: serde::de::DeserializeOwned>(word: &str) -> Result<T, String> {
+    serde_json::from_value(serde_json::Value::String(word.to_owned())).map_err(|e| e.to_string())
+}
+
+fn parse_format(word: &str) -> Result<Format, String> {
+    parse_word(word)
+}
+
+fn parse_part(word: &str) -> Result<Part, String> {
+    parse_word(word)
+}
+
+fn parse_up(word: &str) -> Result<UpAxis, String> {
+    parse_word(word)
+}
+
+fn parse_thickness(word: &str) -> Result<f64, String> {
+    let value: f64 = word.parse().map_err(|_| "not a number".to_owned())?;
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err("the thickness must be above 0 and finite [m]".to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn definitions_are_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn words_of_the_scene_file_are_the_words_of_the_command_line() {
+        let typed = ["fissure", "run", "s.toml", "--formats", "glb,ply", "--parts", "cracked,faces", "--up", "y"];
+        let Command::Run(run) = Arguments::try_parse_from(typed).unwrap().command else { unreachable!() };
+        assert_eq!(run.mesh.formats, [Format::Glb, Format::Ply]);
+        assert_eq!(run.mesh.parts, [Part::Cracked, Part::Faces]);
+        assert_eq!(run.mesh.up, Some(UpAxis::Y));
+    }
+
+    #[test]
+    fn a_thickness_that_is_no_length_is_refused() {
+        for bad in ["0", "-1", "nan", "inf", "thick"] {
+            assert!(
+                Arguments::try_parse_from(["fissure", "post", "a.take", &format!("--thickness={bad}")]).is_err(),
+                "{bad}"
+            );
+        }
+    }
+}

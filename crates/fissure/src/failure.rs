@@ -1,0 +1,79 @@
+//! Why a stage stopped, with what the user can do about it.
+
+use crate::exit::Exit;
+use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
+use std::fmt::Display;
+use std::io;
+use std::path::Path;
+
+/// An error as the user sees it.
+#[derive(Debug, thiserror::Error)]
+#[error("{message}")]
+pub(crate) struct Failure {
+    /// How the program ends because of it.
+    pub(crate) exit: Exit,
+    /// What is wrong, with the offending value.
+    pub(crate) message: String,
+    /// What to do.
+    pub(crate) remedy: Option<String>,
+    /// Where in a text file.
+    pub(crate) snippet: Option<Box<Snippet>>,
+}
+
+/// A place in a text file.
+#[derive(Debug)]
+pub(crate) struct Snippet {
+    pub(crate) source: NamedSource<String>,
+    /// Bytes of the source.
+    pub(crate) span: std::ops::Range<usize>,
+}
+
+impl Failure {
+    /// A failure without a place in a file.
+    pub(crate) fn new(exit: Exit, message: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self { exit, message: message.into(), remedy: Some(remedy.into()), snippet: None }
+    }
+
+    /// A file that cannot be read or written: `doing` says what was tried, e.g. "write".
+    pub(crate) fn file(doing: &str, path: &Path, error: &io::Error) -> Self {
+        Self::new(Exit::File, format!("cannot {doing} `{}`: {error}", path.display()), file_remedy(error))
+    }
+
+    /// The same failure, said of a larger task.
+    pub(crate) fn during(mut self, task: impl Display) -> Self {
+        self.message = format!("{task}: {}", self.message);
+        self
+    }
+}
+
+/// What to do about an error of the file system.
+pub(crate) fn file_remedy(error: &io::Error) -> &'static str {
+    match error.kind() {
+        io::ErrorKind::NotFound => "check the path; relative paths start at the current folder",
+        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
+            "choose a folder you may write to with --output, or change its permissions"
+        }
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+            "free some space or choose another disk with --output; then run the same command again, it resumes"
+        }
+        io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists | io::ErrorKind::IsADirectory => {
+            "a file is in the way of a folder (or the other way round); choose another place with --output"
+        }
+        _ => "check the disk and the path, then run the same command again",
+    }
+}
+
+impl Diagnostic for Failure {
+    fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        self.remedy.as_ref().map(|remedy| Box::new(remedy) as Box<dyn Display>)
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.snippet.as_ref().map(|snippet| &snippet.source as &dyn SourceCode)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let span = self.snippet.as_ref()?.span.clone();
+        Some(Box::new(std::iter::once(LabeledSpan::new_with_span(None, span))))
+    }
+}

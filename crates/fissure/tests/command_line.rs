@@ -1,0 +1,458 @@
+//! The program as its users meet it: the real binary, real files, exit codes and messages.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+/// A plate with a crack, so coarse that it runs in a moment.
+const PLATE: &str = r#"
+[[body]]
+name = "plate"
+material = "pmma"
+shape = { rectangle = { min = [-10.0, -10.0], max = [10.0, 10.0] } }
+
+[[crack]]
+name = "notch"
+line = [[0.0, 10.5], [0.0, 4.0]]
+
+[[load]]
+select = { edge = "left" }
+force = [-20e6, 0.0]
+
+[[load]]
+select = { edge = "right" }
+force = [20e6, 0.0]
+
+[grid]
+particle_spacing = 1.0
+
+[frames]
+range = "1-12"
+rate = 1000.0
+
+[output]
+thickness = 2.0
+"#;
+
+/// A folder to work in, with the scene `plate.toml`.
+fn workplace() -> TempDir {
+    let folder = TempDir::new().unwrap();
+    std::fs::write(folder.path().join("plate.toml"), PLATE).unwrap();
+    folder
+}
+
+fn fissure(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fissure"));
+    command.current_dir(folder).args(arguments).stdin(Stdio::null());
+    command
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    fissure(folder, arguments).output().unwrap()
+}
+
+/// Exit code and everything that was said.
+fn result(output: &Output) -> (i32, String) {
+    let text = String::from_utf8_lossy(&output.stderr).into_owned() + &String::from_utf8_lossy(&output.stdout);
+    (output.status.code().unwrap_or(-1), text)
+}
+
+#[track_caller]
+fn expect(output: &Output, code: i32) -> String {
+    let (found, text) = result(output);
+    assert!(!text.contains("panicked"), "{text}");
+    assert_eq!(found, code, "{text}");
+    text
+}
+
+/// All files below `folder`: relative path and content.
+fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    let mut open = vec![folder.to_owned()];
+    while let Some(directory) = open.pop() {
+        for entry in std::fs::read_dir(directory).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                open.push(path);
+            } else {
+                found.insert(path.strip_prefix(folder).unwrap().to_owned(), std::fs::read(&path).unwrap());
+            }
+        }
+    }
+    found
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    files(folder).into_keys().map(|path| path.to_string_lossy().into_owned()).collect()
+}
+
+#[track_caller]
+fn assert_same_files(a: &Path, b: &Path) {
+    assert_eq!(names(a), names(b));
+    for ((name, left), (_, right)) in files(a).into_iter().zip(files(b)) {
+        assert!(left == right, "{} differs", name.display());
+    }
+}
+
+// What is asked for is there.
+
+#[test]
+fn a_new_scene_checks_and_runs() {
+    let folder = TempDir::new().unwrap();
+    expect(&run(folder.path(), &["new", "mine"]), 0);
+    let text = expect(&run(folder.path(), &["check", "mine/scene.toml"]), 0);
+    for word in ["particles", "cells", "time step", "steps", "formulation", "expected time", "expected memory"] {
+        assert!(text.contains(word), "{word} is missing:\n{text}");
+    }
+    assert_eq!(names(folder.path()), ["mine/scene.toml"], "check writes nothing");
+    expect(&run(folder.path(), &["run", "mine/scene.toml", "--frames", "1-2", "--set", "grid.particle_spacing=0.5"]), 0);
+    assert!(folder.path().join("out/mine/mine.0002.glb").is_file(), "{:?}", names(folder.path()));
+}
+
+#[test]
+fn new_never_writes_over_a_scene() {
+    let folder = workplace();
+    expect(&run(folder.path(), &["new", "."]), 0);
+    std::fs::write(folder.path().join("scene.toml"), "mine").unwrap();
+    assert!(expect(&run(folder.path(), &["new"]), 3).contains("scene.toml"));
+    assert_eq!(std::fs::read(folder.path().join("scene.toml")).unwrap(), b"mine");
+}
+
+#[test]
+fn sim_then_post_gives_the_files_of_run() {
+    let folder = workplace();
+    expect(&run(folder.path(), &["run", "plate.toml", "--output", "a", "--formats", "glb,ply"]), 0);
+    expect(&run(folder.path(), &["sim", "plate.toml", "--output", "b"]), 0);
+    assert!(names(&folder.path().join("b")).iter().all(|name| name.starts_with("plate.take")));
+    expect(&run(folder.path(), &["post", "b/plate.take", "--formats", "glb,ply"]), 0);
+    assert_same_files(&folder.path().join("a"), &folder.path().join("b"));
+    assert_eq!(names(&folder.path().join("a")).iter().filter(|name| name.ends_with(".glb")).count(), 12);
+}
+
+#[test]
+fn frames_are_chosen_and_the_simulation_goes_no_further() {
+    let folder = workplace();
+    expect(&run(folder.path(), &["run", "plate.toml", "--frames", "1-7x3", "--formats", "ply"]), 0);
+    let written = names(folder.path());
+    let meshes: Vec<_> = written.iter().filter(|name| name.ends_with(".ply")).collect();
+    assert_eq!(meshes, ["out/plate/plate.0001.ply", "out/plate/plate.0004.ply", "out/plate/plate.0007.ply"]);
+    assert!(!written.iter().any(|name| name.contains("0008")), "{written:?}");
+    // The rest, later.
+    expect(&run(folder.path(), &["run", "plate.toml", "--formats", "ply"]), 0);
+    assert_eq!(names(folder.path()).iter().filter(|name| name.ends_with(".ply")).count(), 12);
+}
+
+#[test]
+fn the_number_of_threads_changes_no_byte() {
+    let folder = workplace();
+    expect(&run(folder.path(), &["run", "plate.toml", "--output", "one", "--threads", "1"]), 0);
+    expect(&run(folder.path(), &["run", "plate.toml", "--output", "two", "--threads", "2"]), 0);
+    assert_same_files(&folder.path().join("one"), &folder.path().join("two"));
+}
+
+#[test]
+fn the_log_for_programs_is_one_object_per_line() {
+    let folder = workplace();
+    let output = run(folder.path(), &["run", "plate.toml", "--log", "json"]);
+    expect(&output, 0);
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(text.contains("\"event\":\"progress\""), "{text}");
+    for line in text.lines() {
+        let value: serde_json::Value = serde_json::from_str(line).unwrap_or_else(|e| panic!("{line}: {e}"));
+        assert!(value["event"].is_string(), "{line}");
+    }
+    let output = run(folder.path(), &["check", "nothing.toml", "--log", "json"]);
+    let value: serde_json::Value = serde_json::from_slice(&output.stderr).unwrap();
+    assert_eq!((value["event"].as_str(), value["exit"].as_i64()), (Some("error"), Some(3)));
+    let output = run(folder.path(), &["check", "plate.toml", "--log", "json"]);
+    let value: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(value["particles"].as_i64(), Some(400));
+}
+
+#[test]
+fn quiet_says_nothing_when_all_is_well() {
+    let folder = workplace();
+    let output = run(folder.path(), &["run", "plate.toml", "--quiet"]);
+    assert_eq!(expect(&output, 0), "");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    let folder = workplace();
+    let command = format!("{} schema | head -c 1; exit ${{PIPESTATUS[0]}}", env!("CARGO_BIN_EXE_fissure"));
+    let output = Command::new("bash").args(["-c", &command]).current_dir(folder.path()).output().unwrap();
+    assert_eq!((output.status.code(), output.stderr.len()), (Some(0), 0), "{output:?}");
+}
+
+// Interruption.
+
+/// Sends `signal` to `child` as soon as the file `sign` is there.
+fn signal_when(child: &std::process::Child, sign: &Path, signal: &str) {
+    let start = Instant::now();
+    while !sign.exists() {
+        assert!(start.elapsed() < Duration::from_secs(60), "{} never came", sign.display());
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
+}
+
+/// A run long enough to be interrupted, into the folder `output`.
+fn long(output: &str) -> [&str; 6] {
+    ["run", "plate.toml", "--set", "grid.particle_spacing=0.4", "--output", output]
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_resumes_to_the_same_bytes() {
+    let folder = workplace();
+    expect(&run(folder.path(), &long("whole")), 0);
+    let mut interrupts = 0;
+    for frame in [3, 6, 9] {
+        let child =
+            fissure(folder.path(), &long("parts")).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        signal_when(&child, &folder.path().join(format!("parts/plate.take/frame.{frame:04}.safetensors")), "-INT");
+        let output = child.wait_with_output().unwrap();
+        if output.status.code() == Some(75) {
+            interrupts += 1;
+            let text = expect(&output, 75);
+            assert!(text.contains("fissure run plate.toml --set grid.particle_spacing=0.4 --output parts"), "{text}");
+        }
+        // The take is readable and every mesh is complete, as another run of the program shows.
+        expect(&run(folder.path(), &["post", "parts/plate.take", "--output", "again"]), 0);
+        let again = files(&folder.path().join("again"));
+        for (name, bytes) in files(&folder.path().join("parts")) {
+            if name.extension().is_some_and(|e| e == "glb" || e == "ply") {
+                assert!(again[&name] == bytes, "{} differs", name.display());
+            }
+        }
+    }
+    assert!(interrupts > 0, "the scene is too short to be interrupted");
+    expect(&run(folder.path(), &long("parts")), 0);
+    assert_same_files(&folder.path().join("whole"), &folder.path().join("parts"));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_killed_run_resumes_to_the_same_bytes() {
+    let folder = workplace();
+    expect(&run(folder.path(), &long("whole")), 0);
+    let mut child =
+        fissure(folder.path(), &long("parts")).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    signal_when(&child, &folder.path().join("parts/plate.take/frame.0005.safetensors"), "-KILL");
+    assert_eq!(child.wait().unwrap().code(), None, "the scene is too short to be killed");
+    expect(&run(folder.path(), &long("parts")), 0);
+    let leftovers = |name: &String| name.ends_with(".part");
+    assert!(!names(&folder.path().join("parts")).iter().any(leftovers), "{:?}", names(&folder.path().join("parts")));
+    assert_same_files(&folder.path().join("whole"), &folder.path().join("parts"));
+}
+
+// Takes that are there.
+
+#[test]
+fn a_take_of_another_scene_is_kept_unless_told_otherwise() {
+    let folder = workplace();
+    expect(&run(folder.path(), &["sim", "plate.toml", "--frames", "1-2"]), 0);
+    let before = files(folder.path());
+    let other = ["sim", "plate.toml", "--frames", "1-2", "--set", "body.plate.material=glass"];
+    let text = expect(&run(folder.path(), &other), 2);
+    assert!(text.contains("plate.take") && text.contains("--overwrite") && text.contains("--output"), "{text}");
+    assert!(files(folder.path()) == before);
+    expect(&run(folder.path(), &[&other[..], &["--overwrite"]].concat()), 0);
+    assert!(files(folder.path()) != before);
+}
+
+#[test]
+fn overwrite_removes_the_meshes_of_the_run_before_and_nothing_else() {
+    let folder = workplace();
+    expect(&run(folder.path(), &["run", "plate.toml", "--frames", "1-4", "--formats", "glb"]), 0);
+    for precious in ["plate.0099.glb", "plate.take/thesis.txt"] {
+        std::fs::write(folder.path().join("out/plate").join(precious), "years of work").unwrap();
+    }
+    let again = ["run", "plate.toml", "--frames", "1-2", "--formats", "ply", "--overwrite"];
+    expect(&run(folder.path(), &again), 0);
+    let left = names(folder.path());
+    assert!(!left.contains(&"out/plate/plate.0001.glb".to_owned()), "{left:?}");
+    assert!(!left.contains(&"out/plate/plate.take/frame.0003.safetensors".to_owned()), "{left:?}");
+    for precious in ["out/plate/plate.0099.glb", "out/plate/plate.take/thesis.txt"] {
+        assert_eq!(std::fs::read(folder.path().join(precious)).unwrap(), b"years of work");
+    }
+}
+
+#[test]
+fn a_folder_that_is_no_take_is_left_alone() {
+    let folder = workplace();
+    let manifest = folder.path().join("out/plate/plate.take/manifest.json");
+    std::fs::create_dir_all(manifest.parent().unwrap()).unwrap();
+    std::fs::write(&manifest, "{\"years\": 3}").unwrap();
+    for arguments in [&["sim", "plate.toml"][..], &["sim", "plate.toml", "--overwrite"]] {
+        assert!(expect(&run(folder.path(), arguments), 3).contains("not a take"));
+    }
+    assert_eq!(names(&folder.path().join("out")), ["plate/plate.take/manifest.json"]);
+}
+
+#[test]
+fn a_take_of_another_version_is_named() {
+    let folder = workplace();
+    expect(&run(folder.path(), &["sim", "plate.toml", "--frames", "1-2"]), 0);
+    let manifest = folder.path().join("out/plate/plate.take/manifest.json");
+    let mut value: serde_json::Value = serde_json::from_slice(&std::fs::read(&manifest).unwrap()).unwrap();
+    value["version"] = 999.into();
+    std::fs::write(&manifest, value.to_string()).unwrap();
+    for arguments in [&["post", "out/plate/plate.take"][..], &["sim", "plate.toml"]] {
+        let text = expect(&run(folder.path(), arguments), 3);
+        assert!(text.contains("999") && text.contains("manifest.json"), "{text}");
+    }
+}
+
+// Bad input: a clear message, the right code, nothing written.
+
+/// Bad input and what must be said about it.
+struct Bad {
+    what: &'static str,
+    /// Replaced in the scene: (what, by what).
+    edit: (&'static str, &'static str),
+    drawing: &'static str,
+    arguments: &'static [&'static str],
+    code: i32,
+    says: &'static [&'static str],
+}
+
+const FINE: Bad = Bad { what: "", edit: ("", ""), drawing: "", arguments: &["run", "plate.toml"], code: 2, says: &[] };
+const NOTCH: &str = "line = [[0.0, 10.5], [0.0, 4.0]]";
+const SHAPE: &str = "shape = { rectangle = { min = [-10.0, -10.0], max = [10.0, 10.0] } }";
+const DRAWN: &str = "shape = { svg = \"plate\" }\n[drawing]\nfile = \"drawing.svg\"\nwidth = 20.0";
+
+const TABLE: &[Bad] = &[
+    Bad { what: "missing scene", arguments: &["run", "no.toml"], code: 3, says: &["no.toml"], ..FINE },
+    Bad { what: "malformed TOML", edit: ("[grid]", "[grid"), code: 3, says: &["plate.toml", ":19:"], ..FINE },
+    Bad { what: "unknown key", edit: ("thickness", "thicknes"), says: &["thicknes", "`thickness`"], ..FINE },
+    Bad { what: "unknown material", edit: ("\"pmma\"", "\"pmme\""), says: &["pmme", "`pmma`"], ..FINE },
+    Bad { what: "missing drawing", edit: (SHAPE, DRAWN), code: 3, says: &["drawing.svg"], ..FINE },
+    Bad { what: "malformed SVG", edit: (SHAPE, DRAWN), drawing: "<svg><rect", code: 3, says: &["drawing.svg"], ..FINE },
+    Bad {
+        what: "unknown id",
+        edit: (SHAPE, DRAWN),
+        drawing: r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 20 20"><rect id="plane" width="20" height="20"/></svg>"#,
+        says: &["`plate`", "`plane`"],
+        ..FINE
+    },
+    Bad {
+        what: "open outline",
+        edit: (SHAPE, DRAWN),
+        drawing: r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 20 20"><path id="plate" d="M0 0 H20 V20 H0"/></svg>"#,
+        says: &["plate", "open"],
+        ..FINE
+    },
+    Bad {
+        what: "self-crossing outline",
+        edit: (SHAPE, "shape = { polygon = [[-10, -10], [20, 20], [20, -10], [-10, 20], [-20, 0]] }"),
+        says: &["plate", "(5, 5)"],
+        ..FINE
+    },
+    Bad { what: "crack outside", edit: (NOTCH, "line = [[30, 0], [31, 0]]"), says: &["notch", "outside"], ..FINE },
+    Bad { what: "crack of zero length", edit: (NOTCH, "line = [[0, 4], [0, 4]]"), says: &["notch", "length"], ..FINE },
+    Bad {
+        what: "crack crossing itself",
+        edit: (NOTCH, "line = [[0, 0], [4, 0], [4, 2], [2, -2]]"),
+        says: &["notch", "(3, 0)"],
+        ..FINE
+    },
+    Bad {
+        what: "guide away from the tip",
+        edit: (NOTCH, "line = [[0.0, 10.5], [0.0, 4.0]]\nguide = \"path\"\n[[guide]]\nname = \"path\"\nline = [[5, 0], [5, -10]]"),
+        says: &["path", "(5, 0)"],
+        ..FINE
+    },
+    Bad {
+        what: "negative material",
+        arguments: &["run", "plate.toml", "--set", "material.pmma.density=-1"],
+        says: &["density", "-1"],
+        ..FINE
+    },
+    Bad {
+        what: "NaN material",
+        arguments: &["run", "plate.toml", "--set", "material.pmma.young_modulus=nan"],
+        says: &["young_modulus", "NaN"],
+        ..FINE
+    },
+    Bad { what: "zero thickness", edit: ("thickness = 2.0", "thickness = 0.0"), says: &["thickness", "0"], ..FINE },
+    Bad {
+        what: "zero thickness typed",
+        arguments: &["run", "plate.toml", "--thickness", "0"],
+        says: &["--thickness", "0"],
+        ..FINE
+    },
+    Bad {
+        what: "spacing larger than the body",
+        arguments: &["run", "plate.toml", "--set", "grid.particle_spacing=50"],
+        says: &["particle_spacing", "50"],
+        ..FINE
+    },
+    Bad {
+        what: "more particles than memory",
+        arguments: &["run", "plate.toml", "--set", "grid.particle_spacing=1e-5"],
+        says: &["particle_spacing"],
+        ..FINE
+    },
+    Bad {
+        what: "time step above the limit",
+        arguments: &["run", "plate.toml", "--set", "solver.time_step=1"],
+        says: &["time step", "limit"],
+        ..FINE
+    },
+    Bad {
+        what: "override without value",
+        arguments: &["run", "plate.toml", "--set", "growth.bending"],
+        says: &["growth.bending", "="],
+        ..FINE
+    },
+    Bad {
+        what: "frames that are none",
+        arguments: &["run", "plate.toml", "--frames", "9-1"],
+        says: &["--frames", "9-1"],
+        ..FINE
+    },
+    Bad {
+        what: "frames outside the scene",
+        arguments: &["run", "plate.toml", "--frames", "100-200"],
+        says: &["100-200", "1-12"],
+        ..FINE
+    },
+    Bad { what: "unknown format", arguments: &["run", "plate.toml", "--formats", "obj"], says: &["obj", "glb"], ..FINE },
+    Bad {
+        what: "output that cannot be written",
+        arguments: &["run", "plate.toml", "--output", "plate.toml/out"],
+        code: 3,
+        says: &["plate.toml/out", "--output"],
+        ..FINE
+    },
+    Bad { what: "no take", arguments: &["post", "no.take"], code: 3, says: &["no.take"], ..FINE },
+    Bad { what: "a file for a take", arguments: &["post", "plate.toml"], code: 3, says: &["plate.toml"], ..FINE },
+];
+
+#[test]
+fn bad_input_is_named_and_leaves_nothing_behind() {
+    let mut wrong = Vec::new();
+    for bad in TABLE {
+        let folder = TempDir::new().unwrap();
+        assert!(PLATE.contains(bad.edit.0), "{}: nothing to replace", bad.what);
+        let scene = if bad.edit.0.is_empty() { PLATE.to_owned() } else { PLATE.replace(bad.edit.0, bad.edit.1) };
+        std::fs::write(folder.path().join("plate.toml"), scene).unwrap();
+        if !bad.drawing.is_empty() {
+            std::fs::write(folder.path().join("drawing.svg"), bad.drawing).unwrap();
+        }
+        let before = files(folder.path());
+        let (code, text) = result(&run(folder.path(), bad.arguments));
+        let unsaid: Vec<_> = bad.says.iter().filter(|word| !text.contains(**word)).collect();
+        if code != bad.code || !unsaid.is_empty() || text.contains("panicked") {
+            wrong.push(format!("{}: code {code} instead of {}, unsaid {unsaid:?}:\n{text}", bad.what, bad.code));
+        } else if files(folder.path()) != before || folder.path().join("out").exists() {
+            wrong.push(format!("{}: left {:?}", bad.what, names(folder.path())));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
+}
