@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# Makes the pictures of all examples (or of those named) from their meshes: examples/pictures.sh [NAME...]
+# Needs Python with the packages of pipeline/checks/requirements.txt; PYTHON names the interpreter.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+python="${PYTHON:-python3}"
+
+# Frames to show, and how: frames, then options of pipeline/picture.py.
+shots() {
+    case "$1" in
+        pull | pull-rotated | pull-guided) echo "16 28 48" ;;
+        drop-*) echo "24 28 45" ;;
+        logo) echo "1 48" ;;
+    esac
+}
+
+if [ "$#" -eq 0 ]; then set -- pull pull-rotated pull-guided drop-jello drop-snow drop-pmma drop-glass logo; fi
+for name in "$@"; do
+    cargo run --release --quiet -- run "examples/$name/scene.toml" --formats glb --quiet
+    files=()
+    for frame in $(shots "$name"); do files+=("$(printf 'out/%s/%s.%04d.glb' "$name" "$name" "$frame")"); done
+    "$python" pipeline/picture.py "${files[@]}" -o "examples/$name/picture.png"
+done
