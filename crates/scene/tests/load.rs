@@ -149,7 +149,9 @@ fn cracks_are_cut_at_the_outline_and_guides_at_the_tip() {
     assert!(!scene_with(&format!("{PLATE}{LINE}"), None, &["crack.notch.tips=none"]).unwrap().cracks[0].end_live);
 }
 
-/// Each mistake: the scene, overrides, the kind of error, the line it is shown at, and words its message and remedy must have.
+/// The scene, an override, the kind of error, the line it is shown at, and words that message and remedy must have.
+type Mistake = (String, &'static str, LoadErrorKind, Option<usize>, &'static [&'static str]);
+
 #[test]
 fn every_mistake_is_told_with_line_value_and_remedy() {
     use LoadErrorKind::{InputFile, Scene};
@@ -158,7 +160,7 @@ fn every_mistake_is_told_with_line_value_and_remedy() {
     let own = |rest: &str| format!("{body}{rest}");
     let guide = |line: &str| format!("{PLATE}{LINE}guide = 'path'\n[[guide]]\nname = 'path'\nline = {line}\n");
     #[rustfmt::skip]
-    let cases: Vec<(String, &str, LoadErrorKind, Option<usize>, &[&str])> = vec![
+    let cases: Vec<Mistake> = vec![
         ("[[body]\n".into(), "", InputFile, Some(1), &["TOML"]),
         (plate("[solver]\npresett = 'thesis'\n"), "", Scene, Some(6), &["unknown key `presett`", "`solver`", "did you mean `preset`?"]),
         (plate("[solver]\npreset = 'thesiss'\n"), "", Scene, Some(6), &["thesiss", "did you mean `thesis`?"]),

@@ -22,7 +22,7 @@ pub struct Drawing {
     /// Which point of the drawing becomes (0, 0). Default: its centre.
     #[serde(default)]
     pub origin: Origin,
-    /// Font file for text in the drawing, relative to the scene file; its first family replaces families that are not installed.
+    /// Font file for text in the drawing, relative to the scene file; it replaces families that are not installed.
     pub font: Option<PathBuf>,
 }
 

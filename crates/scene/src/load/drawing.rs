@@ -31,7 +31,6 @@ pub(crate) struct LoadedDrawing {
     text: String,
     tree: usvg::Tree,
     to_metres: Affine,
-    has_fonts: bool,
 }
 
 impl LoadedDrawing {
@@ -53,18 +52,17 @@ impl LoadedDrawing {
         })?;
         let mut bytes = vec![text.clone().into_bytes()];
         let mut options = usvg::Options { style_sheet: Some(SHOW_ALL.into()), ..Default::default() };
-        let mut has_fonts = false;
         if document.descendants().any(|n| n.has_tag_name(("http://www.w3.org/2000/svg", "text"))) {
             if let Some(font) = &drawing.font {
                 bytes.push(read_bytes(&folder.join(font), "the font")?);
             }
             let font = bytes.get(1).cloned();
-            has_fonts = load_fonts(&mut options, font, &folder.join(drawing.font.as_deref().unwrap_or(Path::new(""))))?;
+            load_fonts(&mut options, font, &folder.join(drawing.font.as_deref().unwrap_or(Path::new(""))))?;
         }
         let tree = usvg::Tree::from_xmltree(&document, &options)
             .map_err(|e| malformed(None, format!("not valid SVG: {e}")))?;
         let to_metres = scale(drawing, &document, tree.size()).map_err(fault)?;
-        Ok(Self { bytes, tree, to_metres, has_fonts, path: path.clone(), text: text.clone() })
+        Ok(Self { bytes, tree, to_metres, path: path.clone(), text: text.clone() })
     }
 
     /// The regions that element `id` encloses, curves flattened to `tolerance` [m].
@@ -179,9 +177,8 @@ impl LoadedDrawing {
         let line = document.text_pos_at(node.range().start).row;
         let tag = node.tag_name().name();
         if node.descendants().any(|n| n.tag_name().name() == "text") {
-            let family = node.attribute("font-family").unwrap_or("a default font");
-            let fonts = if self.has_fonts { "its letters are in no font found" } else { "no fonts are installed" };
-            let message = format!("the text `{id}` ({file}:{line}, {family}) gives no outline: {fonts}");
+            let message =
+                format!("the text `{id}` ({file}:{line}) gives no outline: it is empty, or no font has its letters");
             return (message, "name a font file: `[drawing] font = \"...ttf\"`, or convert the text to paths".into());
         }
         let message = format!("`{id}` ({file}:{line}) is a <{tag}> that draws no line");
@@ -205,8 +202,14 @@ fn without_repeats(mut points: Vec<Point>) -> Vec<Point> {
     points
 }
 
-/// Loads fonts: the user's own in front, then the installed ones. Returns whether there are any.
-fn load_fonts(options: &mut usvg::Options<'_>, font: Option<Vec<u8>>, path: &Path) -> Result<bool, LoadError> {
+/// The font that stands in for families that are not there; public domain, see `assets/fonts`.
+const FALLBACK_FONT: &[u8] = include_bytes!("../../../../assets/fonts/Tuffy.ttf");
+
+/// Loads fonts: the user's own in front, then the one that comes with Fissure, then the installed ones.
+///
+/// The first stands in for families that are not there and for the generic ones, so that a drawing that names no
+/// installed font looks the same on every machine.
+fn load_fonts(options: &mut usvg::Options<'_>, font: Option<Vec<u8>>, path: &Path) -> Result<(), LoadError> {
     let fonts = options.fontdb_mut();
     if let Some(font) = font {
         fonts.load_font_data(font);
@@ -214,27 +217,18 @@ fn load_fonts(options: &mut usvg::Options<'_>, font: Option<Vec<u8>>, path: &Pat
             return Err(LoadError::file(path, "not a font", "name a TrueType or OpenType file (.ttf, .otf)"));
         }
     }
-    let own = fonts.faces().next().and_then(|f| f.families.first()).map(|(name, _)| name.clone());
+    fonts.load_font_data(FALLBACK_FONT.to_vec());
+    let fallback = fonts.faces().next().and_then(|face| face.families.first()).map(|(name, _)| name.clone());
     fonts.load_system_fonts();
-    // What stands in for families that are not there: the user's own font, else whatever there is, by name so that the
-    // choice does not depend on the order in which the system lists them.
-    let has_default = |fonts: &usvg::fontdb::Database| {
-        let families = [usvg::fontdb::Family::Serif];
-        fonts.query(&usvg::fontdb::Query { families: &families, ..Default::default() }).is_some()
-    };
-    let fallback = match own {
-        Some(family) => Some(family),
-        None if has_default(fonts) => None,
-        None => fonts.faces().filter_map(|f| f.families.first()).map(|(name, _)| name.clone()).min(),
-    };
     if let Some(family) = fallback {
         fonts.set_serif_family(&family);
         fonts.set_sans_serif_family(&family);
         fonts.set_monospace_family(&family);
         fonts.set_cursive_family(&family);
         fonts.set_fantasy_family(&family);
+        options.font_family = family;
     }
-    Ok(!fonts.is_empty())
+    Ok(())
 }
 
 /// From usvg's pixels (y down) to metres (y up).

@@ -3,7 +3,7 @@
 use super::source::SceneSource;
 use crate::fault::SceneFault;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// What kind of mistake it is; decides the exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,7 +21,7 @@ pub struct LoadError {
     /// What kind of mistake it is.
     pub kind: LoadErrorKind,
     /// The file it is in, or the override (`--set a.b=c`).
-    pub path: PathBuf,
+    pub path: Box<Path>,
     /// The text of that file, if it could be read.
     pub source_text: Option<String>,
     /// Bytes of `source_text` that are meant.
@@ -75,7 +75,7 @@ impl LoadError {
         let (path, source_text, span) = source.locate(&fault.path);
         Self {
             kind: LoadErrorKind::Scene,
-            path,
+            path: path.into(),
             source_text: Some(source_text),
             span,
             message: fault.message,

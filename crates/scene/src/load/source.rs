@@ -104,7 +104,7 @@ impl SceneSource {
 fn set_error(argument: &str, message: String, remedy: String) -> LoadError {
     LoadError {
         kind: super::LoadErrorKind::Scene,
-        path: format!("--set {argument}").into(),
+        path: PathBuf::from(format!("--set {argument}")).into(),
         source_text: Some(argument.into()),
         span: Some(0..argument.len()),
         message,
