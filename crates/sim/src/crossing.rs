@@ -7,7 +7,7 @@
 //! |---|---|
 //! | − + + −, − + + 0, 0 + + 0, − 0 + 0 | crosses, particle above |
 //! | + − − +, + − − 0, 0 − − 0, + 0 − 0 | crosses, particle below |
-//! | − 0 + −, + 0 − + | crosses too: the line passes through b. The thesis' list leaves these out, so that a line through a vertex shared by two segments would cross neither; 0 + + − and 0 − − + (through a) stay out, so that it crosses just one |
+//! | − 0 + −, 0 − − + | crosses too: the line passes through an end of the segment. The thesis' list leaves these out, so that a line through a vertex shared by two segments would cross neither; 0 + + − and + 0 − + stay out, so that it crosses just one, and a touched corner both or none |
 //! | 0 in the third place | the particle lies on the crack and counts as above |
 //!
 //! A node exactly on the crack is crossed to from either side: its own field stays empty there.
@@ -65,14 +65,13 @@ pub(crate) fn crossing(particle: Point, node: Point, a: Point, b: Point) -> Opti
         (-1, 0..) => Side::Below,
         _ => return None,
     };
-    // Mirror "below" onto "above".
-    let mirror = if side == Side::Above { 1 } else { -1 };
-    let at_a = mirror * sign(orientation(particle, node, a));
-    let at_b = mirror * sign(orientation(particle, node, b));
+    let at_a = sign(orientation(particle, node, a));
+    let at_b = sign(orientation(particle, node, b));
     let at_node = node_side == 0;
-    let crosses = match (at_a, at_b) {
-        (-1, 1) | (-1, 0) => true,
-        (0, 1) => at_node,
+    // A vertex on the line counts as left of it; with the node on the crack both ends count.
+    let crosses = match (side, at_a, at_b) {
+        (Side::Above, -1, 0..) | (Side::Below, 0.., -1) => true,
+        (Side::Above, 0, 1) | (Side::Below, 1, 0) => at_node,
         _ => false,
     };
     crosses.then_some(Crossing { side, at_node })
@@ -133,11 +132,11 @@ mod tests {
             (point(0.5, -1.0), point(0.5, 0.0), [1, -1, -1, 0], below(true)),
             (point(0.5, -1.0), point(0.0, 0.0), [0, -1, -1, 0], below(true)),
             (point(0.5, -1.0), point(1.0, 0.0), [1, 0, -1, 0], below(true)),
-            // Through b: crosses; through a: does not.
+            // Through one end: from above through b, from below through a.
             (point(1.0, 1.0), point(1.0, -1.0), [-1, 0, 1, -1], above(false)),
-            (point(1.0, -1.0), point(1.0, 1.0), [1, 0, -1, 1], below(false)),
+            (point(0.0, -1.0), point(0.0, 1.0), [0, -1, -1, 1], below(false)),
             (point(0.0, 1.0), point(0.0, -1.0), [0, 1, 1, -1], None),
-            (point(0.0, -1.0), point(0.0, 1.0), [0, -1, -1, 1], None),
+            (point(1.0, -1.0), point(1.0, 1.0), [1, 0, -1, 1], None),
             // The particle on the crack counts as above.
             (point(0.5, 0.0), point(0.5, -1.0), [-1, 1, 0, -1], above(false)),
             (point(0.5, 0.0), point(0.5, 1.0), [1, -1, 0, 1], None),

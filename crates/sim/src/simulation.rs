@@ -1,14 +1,52 @@
-//! The simulation as its users see it.
+//! The simulation as its users see it: steps, what is measured at the tips, growth, frames.
 
-use crate::SimulationError;
-use fissure_scene::{Frame, Scene};
+use crate::crack::{Crack, ENDS, Measured, slot};
+use crate::elastic::Elastic;
+use crate::formulation::{self, Choice};
+use crate::growth;
+use crate::measure::Gauge;
+use crate::particles::{self, Particles};
+use crate::solver::{Observed, Solver};
+use crate::{SimulationError, pieces, saved};
+use fissure_scene::{CrackEnd, End, Energies, Formulation, Frame, Pose, Scene, TipState};
+use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
 /// A simulation in progress.
 #[derive(Debug)]
 pub struct Simulation {
     scene: Scene,
+    elastic: Vec<Elastic>,
+    solver: Box<dyn Solver>,
+    particles: Particles,
+    formulation: Formulation,
+    state: State,
+    /// Largest stable time step at the last look [s].
+    stable_time_step: f64,
+}
+
+/// What a saved state holds besides the solver's own.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct State {
     frame_number: i64,
+    time: f64,
+    steps: u64,
+    cracks: Vec<Crack>,
+    /// ∫ G da [J/m].
+    crack_energy: f64,
+    /// Time between the last two frames [s].
+    interval: f64,
+    /// Fragment of each particle.
+    pieces: Vec<u32>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Saved {
+    version: String,
+    scene_hash: String,
+    formulation: Formulation,
+    state: State,
+    solver: Vec<u8>,
 }
 
 /// What a scene will cost, known before it runs.
@@ -28,7 +66,7 @@ pub struct Estimate {
     pub formulation: String,
     /// Memory the solver needs [bytes].
     pub memory: u64,
-    /// Wall time expected on this machine [s], from a few steps timed by the caller or a rate measured here.
+    /// Wall time expected on this machine [s], from a few steps timed here.
     pub seconds: f64,
 }
 
@@ -49,48 +87,320 @@ pub struct Progress {
     pub crack_length: f64,
 }
 
+/// Increments one tip may take in one step: with a step of 0.9 h/c_d and quarter cells, more would be faster than any wave.
+const MOST_INCREMENTS_PER_STEP: usize = 4;
+
 impl Simulation {
     /// Lays particles and grid for `scene`; the state is that of the first frame.
     ///
     /// # Errors
     /// When the scene cannot be simulated: see [`SimulationError`].
     pub fn new(scene: &Scene) -> Result<Self, SimulationError> {
-        Ok(Self { frame_number: scene.frames.first, scene: scene.clone() })
+        let cracks = Crack::of_scene(scene);
+        let particles = Particles::fill(scene)?;
+        let elastic: Vec<Elastic> = scene.materials.iter().map(|m| Elastic::new(m, scene.plane)).collect();
+        let Choice { formulation, .. } = formulation::choose(scene, &elastic);
+        let solver = formulation::build(formulation, scene, particles.clone(), &cracks)?;
+        let mut simulation = Self {
+            scene: scene.clone(),
+            elastic,
+            solver,
+            formulation,
+            state: State {
+                frame_number: scene.frames.first,
+                time: 0.0,
+                steps: 0,
+                cracks,
+                crack_energy: 0.0,
+                interval: 0.0,
+                pieces: pieces::of_bodies(&particles),
+            },
+            particles,
+            stable_time_step: 0.0,
+        };
+        simulation.split_pieces();
+        simulation.stable_time_step = simulation.solver.stable_time_step();
+        simulation.check_time_step()?;
+        Ok(simulation)
     }
 
-    /// What running `scene` will cost. Lays particles and grid but takes no step beyond a short timing run.
+    fn check_time_step(&self) -> Result<(), SimulationError> {
+        match self.scene.solver.time_step {
+            Some(time_step) if time_step > self.stable_time_step => {
+                Err(SimulationError::TimeStepTooLarge { time_step, limit: self.stable_time_step })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn largest_time_step(&self) -> f64 {
+        self.scene.solver.time_step.unwrap_or(self.scene.solver.courant * self.stable_time_step)
+    }
+
+    /// What running `scene` will cost. Lays particles and grid, and takes a few steps to time them.
     ///
     /// # Errors
     /// As [`Simulation::new`].
     pub fn estimate(scene: &Scene) -> Result<Estimate, SimulationError> {
-        let _ = scene;
-        Err(SimulationError::BadState("not there yet".into()))
+        let mut simulation = Self::new(scene)?;
+        let h = scene.cell_size;
+        let mut cells: Vec<(i64, i64)> = simulation
+            .particles
+            .rest
+            .iter()
+            .map(|p| {
+                let x = (p - simulation.particles.anchor) / h;
+                (x.x.floor() as i64, x.y.floor() as i64)
+            })
+            .collect();
+        cells.sort_unstable();
+        cells.dedup();
+        let time_step = simulation.largest_time_step();
+        let interval = 1.0 / scene.frames.rate;
+        let steps_per_frame = (interval / time_step).ceil().max(1.0);
+        let frames = scene.frames.count().saturating_sub(1) as f64;
+        // Enough steps that the clock's grain does not show.
+        let start = std::time::Instant::now();
+        let mut taken = 0;
+        while taken < 3 || (start.elapsed().as_secs_f64() < 0.2 && taken < 2000) {
+            simulation.one_step(interval / steps_per_frame)?;
+            taken += 1;
+        }
+        let per_step = start.elapsed().as_secs_f64() / f64::from(taken);
+        let choice = formulation::choose(scene, &simulation.elastic);
+        let name = match choice.formulation {
+            Formulation::Updated => "updated Lagrangian",
+            _ => "total Lagrangian",
+        };
+        Ok(Estimate {
+            particles: simulation.particles.len(),
+            cells: cells.len(),
+            time_step: interval / steps_per_frame,
+            stable_time_step: simulation.stable_time_step,
+            steps: (steps_per_frame * frames) as u64,
+            formulation: format!("{name}: {}", choice.reason),
+            memory: particles::memory(simulation.particles.len()),
+            seconds: per_step * steps_per_frame * frames,
+        })
     }
 
     /// Whether the last frame has been reached.
     pub fn is_finished(&self) -> bool {
-        self.frame_number >= self.scene.frames.last
+        self.state.frame_number >= self.scene.frames.last
+    }
+
+    /// Number of the current frame.
+    pub fn frame_number(&self) -> i64 {
+        self.state.frame_number
+    }
+
+    /// Number of particles.
+    pub fn particles(&self) -> usize {
+        self.particles.len()
+    }
+
+    /// Steps taken so far.
+    pub fn steps(&self) -> u64 {
+        self.state.steps
     }
 
     /// The current state as a frame.
     pub fn frame(&self) -> Frame {
-        Frame { number: self.frame_number, ..Frame::default() }
+        let mut particles = self.solver.particle_frame();
+        particles.piece.clone_from(&self.state.pieces);
+        let observed = self.solver.observed();
+        let cracks = &self.state.cracks;
+        let mut tips = Vec::new();
+        for (index, crack) in cracks.iter().enumerate() {
+            for end in ENDS {
+                if crack.tips[slot(end)].is_some() {
+                    let (position, ahead) = observed.tip_now(cracks, index, end);
+                    let direction = ahead.y.atan2(ahead.x);
+                    tips.extend(crack.record(index, end, position, direction, self.state.interval));
+                }
+            }
+        }
+        let energies = self.solver.energies();
+        Frame {
+            number: self.state.frame_number,
+            time: self.state.time,
+            particles,
+            outlines: self.solver.outline_frames(),
+            cracks: self.solver.crack_frames(cracks),
+            tips,
+            energies: Energies {
+                kinetic: energies.kinetic,
+                strain: energies.strain,
+                external_work: energies.external_work,
+                crack: self.state.crack_energy,
+            },
+            colliders: self.collider_poses(),
+        }
     }
 
-    /// Runs to the next frame. `watch` is called now and then (some ten times a second at most matters); when it breaks, the run stops
-    /// in mid-frame and `false` is returned: the state is then good for nothing but being dropped, a saved state of the last frame goes on.
+    fn collider_poses(&self) -> Vec<Pose> {
+        let time = self.state.time;
+        self.scene.colliders.iter().map(|c| crate::collider::Obstacle::new(c).at(time).pose()).collect()
+    }
+
+    /// Runs to the next frame. `watch` is called after every step; when it breaks, the run stops in mid-frame and `false` is returned: the
+    /// state is then good for nothing but being dropped, a saved state of the last frame goes on.
     ///
     /// # Errors
     /// When the run becomes unstable; the frames so far stay valid.
     pub fn advance(&mut self, watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>) -> Result<bool, SimulationError> {
-        let _ = watch;
-        self.frame_number += 1;
+        for tip in self.state.cracks.iter_mut().flat_map(|c| c.tips.iter_mut().flatten()) {
+            tip.grown_at_frame = tip.grown;
+        }
+        self.stable_time_step = self.solver.stable_time_step();
+        self.check_time_step()?;
+        let next = self.scene.frames.time(self.state.frame_number + 1);
+        let start = self.state.time;
+        self.state.interval = next - start;
+        let steps = ((next - start) / self.largest_time_step()).ceil().max(1.0) as u64;
+        let time_step = (next - start) / steps as f64;
+        for step in 1..=steps {
+            self.one_step(time_step)?;
+            // The frame's own time, free of accumulated rounding.
+            self.state.time = if step == steps { next } else { start + time_step * step as f64 };
+            let progress = Progress {
+                time: self.state.time,
+                steps: self.state.steps,
+                frame_steps: step,
+                frame_steps_total: steps,
+                live_tips: self.state.cracks.iter().map(Crack::live_tips).sum(),
+                crack_length: self.state.cracks.iter().map(Crack::length).sum(),
+            };
+            if watch(&progress).is_break() {
+                return Ok(false);
+            }
+        }
+        self.state.frame_number += 1;
+        self.split_pieces();
         Ok(true)
+    }
+
+    /// One step and what it makes the cracks do.
+    fn one_step(&mut self, time_step: f64) -> Result<(), SimulationError> {
+        let Self { scene, elastic, solver, state, .. } = self;
+        let gauge = Gauge { scene, elastic };
+        let cracks = &state.cracks;
+        let live = live_tips(cracks);
+        let mut measured: Vec<Measured> = Vec::with_capacity(live.len());
+        let mut observe = |moment: &dyn Observed| {
+            for &(crack, end) in &live {
+                measured.push(gauge.measure(moment, cracks, crack, end));
+            }
+        };
+        solver.step(cracks, state.time, time_step, &mut observe)?;
+        state.steps += 1;
+        for (&(crack, end), m) in live.iter().zip(&measured) {
+            if let Some(tip) = &mut state.cracks[crack].tips[slot(end)] {
+                tip.measured = *m;
+            }
+        }
+        let time = state.time + time_step;
+        for (&(crack, end), &m) in live.iter().zip(&measured) {
+            self.grow(crack, end, m, time, time_step);
+        }
+        Ok(())
+    }
+
+    /// Lets one tip grow as far as the energy balance and the speed limit allow within a step that ends at `time`.
+    fn grow(&mut self, crack: usize, end: End, first: Measured, time: f64, time_step: f64) {
+        let limit = growth::speed_limit(&self.scene, &self.elastic);
+        let mut measured = first;
+        for increment in 0..MOST_INCREMENTS_PER_STEP {
+            let Some(tip) = &self.state.cracks[crack].tips[slot(end)] else { return };
+            if tip.ready > time || !growth::wants_to_grow(&self.state.cracks[crack], end, &measured, &self.scene) {
+                if increment == 0
+                    && let Some(tip) = &mut self.state.cracks[crack].tips[slot(end)]
+                    && tip.state == TipState::Growing
+                    && tip.ready + ARREST_STEPS * time_step < time
+                {
+                    tip.state = TipState::Arrested;
+                }
+                return;
+            }
+            let Some(advance) = growth::advance(&self.state.cracks, crack, end, &measured, &self.scene) else { return };
+            let line = &mut self.state.cracks[crack];
+            let length = advance.length(line.tip_position(end));
+            for &p in &advance.points {
+                line.push(end, p);
+            }
+            line.ends[slot(end)] = advance.end;
+            self.state.crack_energy += measured.j_integral.max(0.0) * length;
+            if let Some(tip) = &mut line.tips[slot(end)] {
+                tip.state = advance.state;
+                tip.grown += length;
+                tip.ready = tip.ready.max(time - time_step) + length / limit;
+                if let Some(guide) = &mut tip.guide {
+                    guide.walk(length);
+                }
+            }
+            if !advance.points.is_empty() {
+                self.solver.recut(&self.state.cracks, &[(crack, end)]);
+            }
+            if advance.end != CrackEnd::Tip {
+                return;
+            }
+            let gauge = Gauge { scene: &self.scene, elastic: &self.elastic };
+            measured = gauge.measure(self.solver.observed(), &self.state.cracks, crack, end);
+        }
+    }
+
+    fn split_pieces(&mut self) {
+        pieces::split(&self.particles, &self.state.cracks, self.scene.cell_size, &mut self.state.pieces);
+    }
+
+    /// Brings the state to rest under the loads of time zero by kinetic damping: at every peak of the kinetic energy all velocities are set to zero.
+    ///
+    /// Stops when the kinetic energy at a peak is below `tolerance` times the strain energy, or after `most_steps`; cracks do not grow. Returns the
+    /// number of steps. Loads with a curve act with its value at time zero.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`].
+    pub fn relax(&mut self, tolerance: f64, most_steps: u64) -> Result<u64, SimulationError> {
+        let time_step = self.largest_time_step();
+        let mut last = 0.0;
+        for step in 1..=most_steps {
+            self.solver.step(&self.state.cracks, 0.0, time_step, &mut |_| ())?;
+            let kinetic = self.solver.kinetic_energy();
+            if kinetic < last {
+                self.solver.stop();
+                if last <= tolerance * self.solver.energies().strain {
+                    self.measure_all();
+                    return Ok(step);
+                }
+                last = 0.0;
+            } else {
+                last = kinetic;
+            }
+        }
+        self.measure_all();
+        Ok(most_steps)
+    }
+
+    /// Measures every live tip now.
+    pub fn measure_all(&mut self) {
+        let gauge = Gauge { scene: &self.scene, elastic: &self.elastic };
+        for (crack, end) in live_tips(&self.state.cracks) {
+            let m = gauge.measure(self.solver.observed(), &self.state.cracks, crack, end);
+            if let Some(tip) = &mut self.state.cracks[crack].tips[slot(end)] {
+                tip.measured = m;
+            }
+        }
     }
 
     /// The whole state at a frame boundary, for [`Simulation::restore`].
     pub fn save(&self) -> Vec<u8> {
-        Vec::new()
+        saved::to_bytes(&Saved {
+            version: env!("CARGO_PKG_VERSION").into(),
+            scene_hash: self.scene.hash.clone(),
+            formulation: self.formulation,
+            state: self.state.clone(),
+            solver: self.solver.save(),
+        })
     }
 
     /// Goes on from a saved state of the same scene: gives bit for bit what an uninterrupted run gives.
@@ -98,7 +408,34 @@ impl Simulation {
     /// # Errors
     /// [`SimulationError::BadState`] when `state` is of another scene or version.
     pub fn restore(scene: &Scene, state: &[u8]) -> Result<Self, SimulationError> {
-        let _ = state;
-        Self::new(scene)
+        let saved: Saved = saved::from_bytes(state)?;
+        if saved.version != env!("CARGO_PKG_VERSION") || saved.scene_hash != scene.hash {
+            return Err(SimulationError::BadState("it is of another scene or version".into()));
+        }
+        let particles = Particles::fill(scene)?;
+        let elastic: Vec<Elastic> = scene.materials.iter().map(|m| Elastic::new(m, scene.plane)).collect();
+        let cracks = &saved.state.cracks;
+        let solver = formulation::restore(saved.formulation, scene, particles.clone(), cracks, &saved.solver)?;
+        Ok(Self {
+            scene: scene.clone(),
+            elastic,
+            solver,
+            particles,
+            formulation: saved.formulation,
+            state: saved.state,
+            stable_time_step: 0.0,
+        })
     }
+}
+
+/// A growing tip that has not moved for so many steps beyond its waiting time is at rest.
+const ARREST_STEPS: f64 = 50.0;
+
+fn live_tips(cracks: &[Crack]) -> Vec<(usize, End)> {
+    let live = |c: &Crack, end: End| c.tips[slot(end)].as_ref().is_some_and(|t| t.state.is_live());
+    cracks
+        .iter()
+        .enumerate()
+        .flat_map(|(i, c)| ENDS.into_iter().filter(move |&end| live(c, end)).map(move |end| (i, end)))
+        .collect()
 }

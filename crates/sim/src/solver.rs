@@ -37,6 +37,8 @@ pub(crate) struct QuadraturePoint {
     pub(crate) density: f64,
     /// Velocity [m/s].
     pub(crate) velocity: Vector,
+    /// Change of the velocity along e1, v_i,1 [1/s].
+    pub(crate) velocity_slope: Vector,
     /// Acceleration [m/s²].
     pub(crate) acceleration: Vector,
     /// Material.
@@ -73,6 +75,12 @@ pub(crate) trait Solver: std::fmt::Debug + Send {
 
     /// The solver as one that can be observed between steps.
     fn observed(&self) -> &dyn Observed;
+
+    /// Kinetic energy [J/m]; cheap, unlike the rest of the budget.
+    fn kinetic_energy(&self) -> f64;
+
+    /// Sets all velocities to zero.
+    fn stop(&mut self);
 
     /// Energies now.
     fn energies(&self) -> SolverEnergies;

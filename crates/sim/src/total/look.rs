@@ -22,8 +22,10 @@ const STEPS_BETWEEN_CHECKS: u32 = 64;
 const SMALLEST_VOLUME_RATIO: f64 = 0.2;
 /// Principal stretch above which it is.
 const LARGEST_STRETCH: f64 = 3.0;
-/// Rounds of the power iteration. The Rayleigh quotient comes from below; after so many it is within 1 % on plates with and without cracks.
-const POWER_ROUNDS: usize = 60;
+/// Rounds of the Lanczos iteration: after so many the largest Ritz value is within 1 % on plates with and without cracks.
+const LANCZOS_ROUNDS: usize = 40;
+/// What the largest Ritz value may still miss.
+const RITZ_MARGIN: f64 = 1.01;
 
 impl Observed for Moment<'_> {
     fn tip_zone(&self, cracks: &[Crack], crack: usize, end: End, radius: f64) -> TipZone {
@@ -113,6 +115,7 @@ impl Total {
                 energy: crate::energy_density(&h, e.mu, e.lambda),
                 density: e.density,
                 velocity: frame * (back * velocity),
+                velocity_slope: frame * (back * (self.gradient(p, &self.state.velocity) * ahead)),
                 acceleration: frame * (back * acceleration),
                 material: self.particles.material[p],
             });
@@ -217,45 +220,83 @@ impl Total {
         Ok(())
     }
 
-    /// Largest stable step 2/ω_max [s] of the linearised discrete operator, cut cells included, by power iteration on M⁻¹K.
-    pub(super) fn power_iteration(&self) -> f64 {
+    /// Largest stable step 2/ω_max [s] of the linearised discrete operator, cut cells included.
+    ///
+    /// Lanczos iteration on M^-½ K M^-½: its largest Ritz value closes in on ω_max² from below, much faster than a power iteration (Parlett 1998).
+    pub(super) fn lanczos_time_step(&self) -> f64 {
         let fields = self.state.mass.len();
-        // Strains so small that the law is linear to round-off.
-        let amplitude = 1e-7 * self.grid.cell_size;
-        let mut u: FieldVectors = [vec![0.0; fields], vec![0.0; fields]];
-        for (axis, values) in u.iter_mut().enumerate() {
-            for (d, value) in values.iter_mut().enumerate() {
-                if self.inverse_mass[d] > 0.0 {
-                    // A fixed start with all wavelengths in it, the shortest most.
+        let root: Vec<f64> = self.inverse_mass.iter().map(|m| m.sqrt()).collect();
+        // A fixed start with all wavelengths in it, the shortest most, and the divided nodes, where the stiffest modes sit, stressed.
+        let mut q: FieldVectors = [0, 1].map(|axis| {
+            (0..fields)
+                .map(|d| {
+                    if root[d] == 0.0 {
+                        return 0.0;
+                    }
                     let node = self.state.fields.node(d);
                     let (i, j) = (node % self.grid.columns, node / self.grid.columns);
                     let sign = if (i + axis * (i + j)).is_multiple_of(2) { 1.0 } else { -1.0 };
                     let jitter = ((d * 7919 + axis * 104_729) % 1009) as f64 / 1009.0;
-                    *value = sign * (0.5 + jitter);
-                }
-            }
+                    let divided = if d >= self.grid.len() { 4.0 } else { 1.0 };
+                    sign * (0.5 + jitter) * divided
+                })
+                .collect()
+        });
+        let dot = |a: &FieldVectors, b: &FieldVectors| -> f64 {
+            a.iter().flatten().zip(b.iter().flatten()).map(|(x, y)| x * y).sum()
+        };
+        let norm = dot(&q, &q).sqrt();
+        if norm == 0.0 {
+            return f64::INFINITY;
         }
+        q.iter_mut().flatten().for_each(|x| *x /= norm);
+        let mut before: FieldVectors = [vec![0.0; fields], vec![0.0; fields]];
+        let mut scaled = before.clone();
         let mut force: FieldVectors = [Vec::new(), Vec::new()];
-        let mut largest = 0.0_f64;
-        for _ in 0..POWER_ROUNDS {
-            let biggest = u.iter().flatten().fold(0.0_f64, |a, &b| a.max(b.abs()));
+        let (mut alphas, mut betas): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
+        for _ in 0..LANCZOS_ROUNDS {
+            // K M^-½ q by the forces of a displacement so small that the law is linear to round-off.
+            let biggest = (0..2).flat_map(|a| q[a].iter().zip(&root)).fold(0.0_f64, |m, (x, r)| m.max((x * r).abs()));
             if biggest == 0.0 {
                 break;
             }
-            u.iter_mut().flatten().for_each(|x| *x *= amplitude / biggest);
-            self.internal_forces(&u, &mut force);
-            let (mut upper, mut lower) = (0.0, 0.0);
+            let amplitude = 1e-7 * self.grid.cell_size / biggest;
             for axis in 0..2 {
                 for d in 0..fields {
-                    upper -= u[axis][d] * force[axis][d];
-                    lower += u[axis][d] * u[axis][d] * self.state.mass[d];
-                    u[axis][d] = -force[axis][d] * self.inverse_mass[d];
+                    scaled[axis][d] = q[axis][d] * root[d] * amplitude;
                 }
             }
-            largest = largest.max(upper / lower);
+            self.internal_forces(&scaled, &mut force);
+            let beta = betas.last().copied().unwrap_or(0.0);
+            for axis in 0..2 {
+                for d in 0..fields {
+                    force[axis][d] = -force[axis][d] * root[d] / amplitude - beta * before[axis][d];
+                }
+            }
+            let alpha = dot(&force, &q);
+            for axis in 0..2 {
+                for d in 0..fields {
+                    force[axis][d] -= alpha * q[axis][d];
+                }
+            }
+            alphas.push(alpha);
+            let beta = dot(&force, &force).sqrt();
+            if beta <= 1e-12 * alpha.abs() {
+                break;
+            }
+            betas.push(beta);
+            force.iter_mut().flatten().for_each(|x| *x /= beta);
+            std::mem::swap(&mut before, &mut q);
+            std::mem::swap(&mut q, &mut force);
         }
-        // What is still missing of the largest eigenvalue.
-        2.0 / (1.01 * largest).sqrt()
+        let n = alphas.len();
+        let tridiagonal = nalgebra::DMatrix::from_fn(n, n, |i, j| match i.abs_diff(j) {
+            0 => alphas[i],
+            1 => betas[i.min(j)],
+            _ => 0.0,
+        });
+        let largest = tridiagonal.symmetric_eigenvalues().max();
+        2.0 / (RITZ_MARGIN * largest).sqrt()
     }
 
     pub(super) fn frame_of_particles(&self) -> ParticleFrame {

@@ -118,3 +118,49 @@ fn cell_forces(count: usize, constants: RowConstants, u: [&[f64]; 8], corner: &m
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fissure_scene::Matrix;
+
+    /// Truth: the sum over particles of −V P ∇w with the stress of `constitutive.rs`, cell by cell.
+    #[test]
+    fn rows_equal_the_particle_sum() {
+        let (mu, lambda, h) = (1.3, 2.1, 0.7);
+        let count = 40;
+        let values = |seed: f64| -> Vec<f64> { (0..=count).map(|i| 0.1 * ((i as f64) * seed).sin()).collect() };
+        let (lx, ly, ux, uy) = (values(1.1), values(2.3), values(3.7), values(5.3));
+        let u = NodeRows { lower: [&lx, &ly], upper: [&ux, &uy] };
+        let volume = 0.25 * h * h;
+        let constants =
+            RowConstants { two_mu: 2.0 * mu * volume / h, lambda: lambda * volume / h, inverse_cell_size: 1.0 / h };
+        let mut found = [0; 4].map(|_| vec![0.0; count + 1]);
+        let run = Run { first: 1, count: count - 2, material: 0 };
+        add_forces(run, constants, &u, found.each_mut().map(|f| f.as_mut_slice()));
+        let mut expected = [0; 4].map(|_| vec![0.0; count + 1]);
+        for cell in 1..count - 1 {
+            for (a, b) in [(0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75)] {
+                let gradients = [
+                    (cell, 0, [-(1.0 - b) / h, -(1.0 - a) / h]),
+                    (cell + 1, 0, [(1.0 - b) / h, -a / h]),
+                    (cell, 2, [-b / h, (1.0 - a) / h]),
+                    (cell + 1, 2, [b / h, a / h]),
+                ];
+                let mut gradient = Matrix::zeros();
+                for (i, row, g) in gradients {
+                    let (x, y) = if row == 0 { (lx[i], ly[i]) } else { (ux[i], uy[i]) };
+                    gradient += Matrix::new(x * g[0], x * g[1], y * g[0], y * g[1]);
+                }
+                let stress = crate::first_piola_stress(&gradient, mu, lambda) * volume;
+                for (i, row, g) in gradients {
+                    expected[row][i] -= stress.m11 * g[0] + stress.m12 * g[1];
+                    expected[row + 1][i] -= stress.m21 * g[0] + stress.m22 * g[1];
+                }
+            }
+        }
+        for (f, e) in found.iter().flatten().zip(expected.iter().flatten()) {
+            assert!((f - e).abs() < 1e-14, "{f} {e}");
+        }
+    }
+}

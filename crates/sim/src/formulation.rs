@@ -1,0 +1,118 @@
+//! Which formulation a scene gets, and why.
+
+use crate::SimulationError;
+use crate::crack::Crack;
+use crate::elastic::Elastic;
+use crate::particles::Particles;
+use crate::solver::Solver;
+use crate::total::Total;
+use fissure_scene::{Formulation, LoadKind, Scene, bounds};
+
+/// A formulation and the reason for it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Choice {
+    pub(crate) formulation: Formulation,
+    pub(crate) reason: String,
+}
+
+/// Expected strain above which small-strain scenes end. Glass, stone and hard plastics break at a hundredth of it or less; the total
+/// Lagrangian formulation itself stays exact well beyond.
+const SMALL_STRAIN: f64 = 0.1;
+
+/// Chooses the formulation of `scene`.
+pub(crate) fn choose(scene: &Scene, elastic: &[Elastic]) -> Choice {
+    let chosen = |formulation, reason: String| Choice { formulation, reason };
+    if scene.solver.formulation != Formulation::Auto {
+        return chosen(scene.solver.formulation, "asked for by the scene".into());
+    }
+    if let Some(m) = scene.materials.iter().find(|m| m.plasticity.is_some()) {
+        return chosen(Formulation::Updated, format!("material `{}` flows plastically", m.name));
+    }
+    let strain = expected_strain(scene, elastic);
+    if strain > SMALL_STRAIN {
+        return chosen(
+            Formulation::Updated,
+            format!("strains of about {strain:.1e} are expected, more than {SMALL_STRAIN}"),
+        );
+    }
+    chosen(Formulation::Total, format!("every material is elastic and strains of about {strain:.1e} are expected"))
+}
+
+/// Strain that loads and impacts will cause, roughly: traction over modulus, speed over wave speed.
+fn expected_strain(scene: &Scene, elastic: &[Elastic]) -> f64 {
+    let softest = elastic.iter().map(|e| e.young_modulus).fold(f64::INFINITY, f64::min);
+    let slowest = elastic.iter().map(Elastic::dilatational_wave_speed).fold(f64::INFINITY, f64::min);
+    let mut size = 0.0_f64;
+    let mut speed = 0.0_f64;
+    for body in &scene.bodies {
+        let (low, high) = body.region.bounds();
+        let extent = (high - low).norm();
+        size = size.max(extent);
+        // Spinning alone strains little; what counts is the speed at which things can meet.
+        for v in &body.velocities {
+            speed = speed.max(v.velocity.norm());
+        }
+    }
+    let mut strain = 0.0_f64;
+    for load in &scene.loads {
+        let most = load.curve.points.iter().map(|p| p.1.abs()).fold(0.0, f64::max);
+        let factor = if load.curve.points.is_empty() { 1.0 } else { most };
+        let stress = match &load.kind {
+            LoadKind::Traction(t) => t.norm(),
+            LoadKind::Force(f) => f.norm() / size,
+            LoadKind::PerPoint(values) => values.iter().map(|v| v.1.norm()).sum::<f64>() / size,
+        };
+        strain = strain.max(stress * factor / softest);
+    }
+    for support in &scene.supports {
+        let most = support.curve.points.iter().map(|p| p.1.abs()).fold(0.0, f64::max);
+        let factor = if support.curve.points.is_empty() { 1.0 } else { most };
+        speed = speed.max(support.velocity.iter().flatten().fold(0.0_f64, |a, &v| a.max(v.abs())) * factor);
+    }
+    if !scene.colliders.is_empty() {
+        for collider in &scene.colliders {
+            for w in collider.keyframes.windows(2) {
+                let interval = w[1].0 - w[0].0;
+                if interval > 0.0 {
+                    speed = speed.max((w[1].1.position - w[0].1.position).norm() / interval);
+                }
+            }
+        }
+        // What falls through the scene's own height, or for all of its time if that is less.
+        let time = scene.frames.time(scene.frames.last);
+        let g = scene.gravity.norm();
+        let all: Vec<_> = scene.bodies.iter().flat_map(|b| b.region.exterior.iter().copied()).collect();
+        let (low, high) = bounds(&all);
+        speed = speed.max((speed + g * time).min((2.0 * g * (high - low).norm()).sqrt() + speed));
+    }
+    strain.max(speed / slowest)
+}
+
+/// Builds the solver.
+///
+/// # Errors
+/// When the scene cannot be laid out: see [`SimulationError`].
+pub(crate) fn build(
+    formulation: Formulation,
+    scene: &Scene,
+    particles: Particles,
+    cracks: &[Crack],
+) -> Result<Box<dyn Solver>, SimulationError> {
+    let _ = formulation;
+    Ok(Box::new(Total::new(scene, particles, cracks)?))
+}
+
+/// Builds the solver with a saved state.
+///
+/// # Errors
+/// As [`build`], and when the state is not one of this scene.
+pub(crate) fn restore(
+    formulation: Formulation,
+    scene: &Scene,
+    particles: Particles,
+    cracks: &[Crack],
+    state: &[u8],
+) -> Result<Box<dyn Solver>, SimulationError> {
+    let _ = formulation;
+    Ok(Box::new(Total::restore(scene, particles, cracks, state)?))
+}

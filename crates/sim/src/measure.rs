@@ -1,0 +1,195 @@
+//! What a crack tip feels: from the material around it to J, K_I, K_II and the kink angle.
+
+use crate::StressIntensity;
+use crate::contour::{Contour, ContourHalf, ContourSample};
+use crate::crack::{Crack, Measured};
+use crate::crossing::Side;
+use crate::domain::domain_integrals;
+use crate::elastic::Elastic;
+use crate::kernel::axis_stencil;
+use crate::solver::{Observed, QuadraturePoint, TipZone};
+use fissure_scene::{End, JMethod, Matrix, ModeSplit, Point, Scene, Vector};
+use std::convert::Infallible;
+
+/// The radius is not made smaller than this, in cells: within it lie too few particles for an integral.
+const SMALLEST_RADIUS: f64 = 2.0;
+/// q is 1 within this radius, in cells.
+const INNER_RADIUS: f64 = 1.0;
+/// A turn of the crack by more than this counts as a kink [rad]: over it the energy of a field along the crack is no longer that of one direction. Growth in
+/// quarter cells along a smooth path turns by less.
+const KINK: f64 = 0.26;
+
+/// Everything the measurement needs besides the solver.
+#[derive(Debug)]
+pub(crate) struct Gauge<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) elastic: &'a [Elastic],
+}
+
+impl Gauge<'_> {
+    /// Measures one tip.
+    pub(crate) fn measure(&self, solver: &dyn Observed, cracks: &[Crack], crack: usize, end: End) -> Measured {
+        let settings = &self.scene.solver;
+        let h = self.scene.cell_size;
+        let wanted = settings.j_radius * h;
+        let radius = match settings.j_method {
+            JMethod::Domain => wanted.min(self.free_radius(cracks, crack, end)).max(SMALLEST_RADIUS * h),
+            JMethod::Contour => wanted,
+        };
+        // The contour takes kernel averages around its points.
+        let reach = if settings.j_method == JMethod::Contour { radius + 2.0 * h } else { radius };
+        let zone = solver.tip_zone(cracks, crack, end, reach);
+        let Some(nearest) = zone.points.iter().min_by(|a, b| a.place.norm_squared().total_cmp(&b.place.norm_squared()))
+        else {
+            return Measured::default();
+        };
+        let material = &self.scene.materials[nearest.material as usize];
+        let elastic = &self.elastic[nearest.material as usize];
+        let domain = |outer: f64| {
+            domain_integrals(&zone.points, self.elastic, elastic, INNER_RADIUS * h, outer, settings.area_term)
+        };
+        let (j_integral, interaction) = match settings.j_method {
+            JMethod::Domain => {
+                let found = domain(radius);
+                (found.j_integral, StressIntensity { mode_1: found.mode_1, mode_2: found.mode_2 })
+            }
+            JMethod::Contour => {
+                let j = self.contour_j(&zone, radius);
+                let found =
+                    if settings.mode_split == ModeSplit::Interaction { domain(reach) } else { Default::default() };
+                (j, StressIntensity { mode_1: found.mode_1, mode_2: found.mode_2 })
+            }
+        };
+        let split = match settings.mode_split {
+            ModeSplit::OpeningDisplacement => {
+                StressIntensity::from_opening(j_integral, zone.opening, elastic.effective_modulus)
+            }
+            ModeSplit::Interaction => interaction,
+        };
+        // When: by the energy release rate, J. Where to: by the ratio of the modes.
+        let decisive = StressIntensity::from_opening(
+            j_integral,
+            Vector::new(split.mode_2, split.mode_1.max(0.0)),
+            elastic.effective_modulus,
+        );
+        let kink_angle = decisive.kink_angle(self.scene.growth.bending);
+        Measured {
+            j_integral,
+            mode_1: split.mode_1,
+            mode_2: split.mode_2,
+            kink_angle,
+            equivalent: decisive.equivalent(kink_angle),
+            fracture_toughness: material.fracture_toughness,
+            contour_radius: radius,
+            radius_shrunk: radius < wanted,
+        }
+    }
+
+    /// Distance from a tip to the nearest thing that would spoil the integral: a ring, another crack, the other end of this one, a kink [m].
+    fn free_radius(&self, cracks: &[Crack], crack: usize, end: End) -> f64 {
+        let line = &cracks[crack];
+        let tip = line.tip_position(end);
+        let mut free = crate::particles::distance_to_rings(&self.scene.bodies[line.body as usize].region, tip);
+        for (index, other) in cracks.iter().enumerate() {
+            if index != crack && other.body == line.body {
+                for w in other.points.windows(2) {
+                    free = free.min(crate::particles::distance_to_segment(tip, w[0], w[1]));
+                }
+            }
+        }
+        let points: Vec<Point> = match end {
+            End::Start => line.points.clone(),
+            End::End => line.points.iter().rev().copied().collect(),
+        };
+        let ahead = line.ahead(end);
+        for w in points.windows(3) {
+            let (a, b) = (w[1] - w[0], w[2] - w[1]);
+            // Both the turn at one point and what small turns have added up to since the tip.
+            let turned = a.perp(&b).atan2(a.dot(&b)).abs().max((-ahead).perp(&b).atan2((-ahead).dot(&b)).abs());
+            let distance = (w[1] - tip).norm();
+            if distance > free {
+                break;
+            }
+            if turned > KINK {
+                free = free.min(distance);
+                break;
+            }
+        }
+        free.min((points[points.len() - 1] - tip).norm())
+    }
+
+    /// J along the crack by the thesis' contour: 16 segments, values by kernel averages of the particles on the same side (its eq. 25 to 28).
+    fn contour_j(&self, zone: &TipZone, radius: f64) -> f64 {
+        let opening = if zone.opening_distance > 0.0 {
+            zone.opening.y.max(0.0) * (radius / zone.opening_distance).sqrt()
+        } else {
+            0.0
+        };
+        let lower = Point::new(-radius, -0.5 * opening);
+        let upper = Point::new(-radius, 0.5 * opening);
+        let contour = Contour::new(Point::origin(), radius, lower, upper);
+        let sampled = contour.j_integral(|place, half| Ok::<_, Infallible>(self.contour_sample(zone, place, half)));
+        match sampled {
+            Ok(j) => j.x,
+            Err(never) => match never {},
+        }
+    }
+
+    fn contour_sample(&self, zone: &TipZone, place: Point, half: ContourHalf) -> ContourSample {
+        let h = self.scene.cell_size;
+        let half_size = 0.5 * self.scene.particle_spacing / h;
+        let weight_of = |offset: f64| {
+            // The kernel of a node at 0, seen from a particle at `offset`.
+            let stencil = axis_stencil(self.scene.solver.kernel, half_size, offset);
+            usize::try_from(-stencil.first).ok().and_then(|k| stencil.weight.get(k)).copied().unwrap_or(0.0)
+        };
+        let side = match half {
+            ContourHalf::Above => Side::Above,
+            ContourHalf::Below => Side::Below,
+        };
+        let mut mass = 0.0;
+        let mut sample = ContourSample {
+            strain_energy_density: 0.0,
+            kinetic_energy_density: 0.0,
+            cauchy_stress: Matrix::zeros(),
+            displacement_gradient: Matrix::zeros(),
+        };
+        let mut velocity = Vector::zeros();
+        let mut density = 0.0;
+        for p in &zone.points {
+            let w = weight_of((p.place.x - place.x) / h) * weight_of((p.place.y - place.y) / h);
+            if w <= 0.0 || is_across(p, place, side) {
+                continue;
+            }
+            let m = w * p.density * p.volume;
+            mass += m;
+            sample.strain_energy_density += m * p.energy;
+            sample.cauchy_stress += m * p.stress;
+            sample.displacement_gradient += m * p.gradient;
+            velocity += m * p.velocity;
+            density += m * p.density;
+        }
+        if mass > 0.0 {
+            sample.strain_energy_density /= mass;
+            sample.cauchy_stress /= mass;
+            sample.displacement_gradient /= mass;
+            sample.kinetic_energy_density = 0.5 * (density / mass) * (velocity / mass).norm_squared();
+        }
+        sample
+    }
+}
+
+/// Whether the crack, straight behind the tip, lies between a particle and a point of the contour.
+fn is_across(particle: &QuadraturePoint, place: Point, side: Side) -> bool {
+    let sides_differ =
+        if particle.place.x < 0.0 { particle.side != side } else { particle.place.y * side.sign() < 0.0 };
+    if !sides_differ || place.x >= 0.0 && particle.place.x >= 0.0 {
+        return false;
+    }
+    let span = particle.place.y - place.y;
+    if span == 0.0 {
+        return place.x < 0.0;
+    }
+    let t = -place.y / span;
+    place.x + t * (particle.place.x - place.x) < 0.0
+}
