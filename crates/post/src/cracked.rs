@@ -8,9 +8,10 @@ use crate::outline::outline_edges;
 use crate::pieces::{Polygon, pieces, without_slivers};
 use crate::pinch::part_pinches;
 use crate::post::{PostError, PostOptions, object_name};
+use crate::seam::{guests, join};
 use crate::snap::Grid;
 use crate::source::SourceEdge;
-use fissure_scene::{CrackFrame, Frame, OutlineFrame, Scene};
+use fissure_scene::{CrackEnd, CrackFrame, Frame, OutlineFrame, Scene};
 use std::collections::BTreeMap;
 
 /// One solid per body and fragment, in that order; `with_cracks`: the cracks are cut out.
@@ -41,11 +42,22 @@ fn body_polygons(
     let faces = cracks.iter().flat_map(|c| c.above.iter().chain(&c.below));
     let grid = Grid::covering(outlines.iter().flat_map(|o| &o.position).chain(faces));
 
-    let mut sources: Vec<SourceEdge> = outlines.iter().flat_map(|o| outline_edges(o, grid)).collect();
-    for crack in cracks {
-        let first = scene.cracks.get(crack.crack as usize).and_then(|c| c.points.first().copied());
-        sources.extend(opening_edges(crack, first, grid));
+    let mut rings: Vec<Vec<SourceEdge>> = outlines.iter().map(|o| outline_edges(o, grid)).collect();
+    let first = |crack: &CrackFrame| scene.cracks.get(crack.crack as usize).and_then(|c| c.points.first().copied());
+    let mut openings: Vec<Vec<SourceEdge>> = cracks.iter().map(|c| opening_edges(c, first(c), grid)).collect();
+    for guest in cracks.iter().flat_map(|c| guests(c, grid)) {
+        let trunk = |crack: u32| cracks.iter().position(|c| c.crack == crack);
+        match guest.end {
+            CrackEnd::Mouth => join(&mut rings, &guest),
+            CrackEnd::Junction { crack } => {
+                if let Some(at) = trunk(crack) {
+                    join(&mut openings[at..=at], &guest);
+                }
+            }
+            CrackEnd::Tip => {}
+        }
     }
+    let mut sources: Vec<SourceEdge> = rings.into_iter().chain(openings).flatten().collect();
     let shapes = without_slivers(material(&sources));
     let parted = part_pinches(shapes, &mut sources).map_err(|place| {
         let place = grid.place(place);

@@ -6,6 +6,7 @@
 //! 1. `snap`: all positions go onto a power-of-two grid that is exact in `f32`.
 //! 2. `outline`, `opening`: the moved rings and the opening polygons of the cracks become boundary edges, each of which
 //!    knows the rest position, velocity and arc length of the material at its ends.
+//!    `seam`: where a crack ends on a ring or on another crack, that boundary is parted if the solver has not done so.
 //! 3. `boolean`: material is where the edges wind around a place at least once. An open crack takes one off; where
 //!    faces overlap one is added, so closed cracks have no walls; fragments may turn and fly apart as they like.
 //! 4. `pieces`: slivers that are mere rounding go; polygons get the fragment numbers of the simulation.
@@ -34,6 +35,7 @@ mod pieces;
 mod pinch;
 mod ply;
 mod post;
+mod seam;
 mod snap;
 mod source;
 mod triangulate;

@@ -163,3 +163,53 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    /// The corner tetrahedron of the unit cube: volume 1/6, as a prism of area 1/2 and a third of the height.
+    fn tetrahedron() -> Mesh {
+        let content = Content::Solid { area: 0.5, thickness: 1.0 / 3.0 };
+        let mut mesh = Mesh::new("tetrahedron".to_owned(), 0, content);
+        for position in [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
+            mesh.vertices.push(Vertex { position, normal: [0.0; 3], texture: [0.0; 2], velocity: [0.0; 3] });
+        }
+        mesh.triangles[0] = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        mesh
+    }
+
+    fn defect(change: impl FnOnce(&mut Mesh)) -> MeshDefect {
+        let mut mesh = tetrahedron();
+        assert_eq!(mesh.check(), Ok(()));
+        change(&mut mesh);
+        mesh.check().unwrap_err()
+    }
+
+    #[test]
+    fn each_defect_is_found() {
+        let open = defect(|m| m.triangles[0].truncate(3));
+        assert!(matches!(open, MeshDefect::Open { .. }), "{open}");
+        let twice = defect(|m| m.triangles[0].push([1, 2, 3]));
+        assert!(matches!(twice, MeshDefect::NotManifold { .. }), "{twice}");
+        let flipped = defect(|m| m.triangles[0][0].swap(0, 1));
+        assert!(matches!(flipped, MeshDefect::NotManifold { .. }), "{flipped}");
+        let inside_out = defect(|m| m.triangles[0].iter_mut().for_each(|t| t.swap(0, 1)));
+        assert!(matches!(inside_out, MeshDefect::WrongVolume { volume, .. } if volume < 0.0), "{inside_out}");
+        // Apart in f64, but one place in f32.
+        let flat = defect(|m| m.vertices[1].position = [1e-60, 0.0, 0.0]);
+        assert_eq!(flat, MeshDefect::Degenerate { place: [0.0; 3] });
+        let larger = defect(|m| m.content = Content::Solid { area: 0.500_001, thickness: 1.0 / 3.0 });
+        assert!(matches!(larger, MeshDefect::WrongVolume { .. }), "{larger}");
+    }
+
+    #[test]
+    fn split_vertices_close_by_position() {
+        let mut mesh = tetrahedron();
+        let copy = Vertex { position: [1.0, -0.0, 0.0], ..mesh.vertices[1] };
+        mesh.vertices.push(copy);
+        mesh.triangles[0][3] = [4, 2, 3];
+        assert_eq!(mesh.check(), Ok(()));
+    }
+}

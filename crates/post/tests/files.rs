@@ -114,6 +114,8 @@ fn the_manifest_does_not_depend_on_the_order_of_the_frames() {
     let value: serde_json::Value = serde_json::from_str(&written).unwrap();
     let files = value["files"].as_array().unwrap();
     assert_eq!(files.len(), 3 * 3 * 2);
+    let frames: Vec<i64> = files.iter().map(|f| f["frame"].as_i64().unwrap()).collect();
+    assert!(frames.is_sorted(), "{frames:?}");
     assert_eq!(files[0]["file"], "glass.0001.glb");
     assert!((files[0]["volume"].as_f64().unwrap() - files[0]["area"].as_f64().unwrap() * 0.3).abs() < 1e-4);
     // Nothing half-written stays behind.

@@ -169,6 +169,45 @@ fn a_branch_opens_into_the_crack_it_ends_on() {
 }
 
 #[test]
+fn mouths_and_junctions_open_even_where_the_boundary_was_not_parted() {
+    let region = square(20.0);
+    let scene = scene(region.clone());
+    let straight = |x0: f64, x1: f64| (0..=4).map(|i| Point::new(x0 + 0.25 * (x1 - x0) * f64::from(i), 10.0)).collect();
+    // Faces apart by 0.2 up to the outline, which has one tracer there, or none.
+    let across = Opened::symmetric(straight(0.0, 20.0), &[0.2; 5], CrackEnd::Mouth, CrackEnd::Mouth);
+    for per_side in [2, 3] {
+        let whole = frame(&region, per_side, &[]);
+        let mut cut = frame(&region, per_side, std::slice::from_ref(&across));
+        cut.outlines = whole.outlines;
+        let meshes = cracked(&scene, &cut);
+        assert!((area(&meshes) - 396.0).abs() < 1e-4, "{}", area(&meshes));
+        assert_eq!(inside_triangles(&meshes), 2 * 2 * 4);
+    }
+    // A branch upwards and one downwards; the trunk has a point where the first leaves it, none where the second does.
+    let up = |x: f64, way: f64| Opened {
+        rest: (0..=2).map(|i| Point::new(x, 10.0 + way * f64::from(i))).collect(),
+        above: [0.1, 0.05, 0.0].map(|d| Vector::new(-way * d, if d == 0.1 { 0.1 * way } else { 0.0 })).to_vec(),
+        below: [0.1, 0.05, 0.0].map(|d| Vector::new(way * d, if d == 0.1 { 0.1 * way } else { 0.0 })).to_vec(),
+        start: CrackEnd::Junction { crack: 0 },
+        end: CrackEnd::Tip,
+    };
+    let mut branched = frame(&region, 2, &[across, up(10.0, 1.0), up(7.0, -1.0)]);
+    let meshes = cracked(&scene, &branched);
+    // Each branch: a triangle 0.2 wide and 2 high, less the strip of 0.1 that the trunk takes.
+    let branch = 0.15 * 0.9 + 0.05;
+    assert!((area(&meshes) - (396.0 - 2.0 * branch)).abs() < 1e-4, "{}", area(&meshes) - 396.0 + 2.0 * branch);
+    // The same with the branches walked from tip to junction.
+    for crack in &mut branched.cracks[1..] {
+        for points in [&mut crack.rest, &mut crack.above, &mut crack.below] {
+            points.reverse();
+        }
+        std::mem::swap(&mut crack.above, &mut crack.below);
+        std::mem::swap(&mut crack.start, &mut crack.end);
+    }
+    assert!((area(&cracked(&scene, &branched)) - area(&meshes)).abs() < 1e-9);
+}
+
+#[test]
 fn openings_that_touch_in_a_point_are_parted() {
     let region = square(20.0);
     let scene = scene(region.clone());
@@ -195,6 +234,37 @@ fn small_fragments_are_dropped_when_asked() {
     assert_eq!(cracked(&scene, &frame).len(), 0);
     scene.output.smallest_fragment = 199.0;
     assert_eq!(cracked(&scene, &frame).len(), 2);
+}
+
+#[test]
+fn most_particles_decide_the_fragment() {
+    let (scene, mut frame) = halves(20.0, [(0.0, Vector::zeros()), (0.0, Vector::new(1.0, 0.0))]);
+    // Three of two hundred have strayed.
+    for p in 0..3 {
+        frame.particles.piece[p] = 1 - frame.particles.piece[p];
+    }
+    let meshes = cracked(&scene, &frame);
+    let left = meshes.iter().find(|m| m.vertices.iter().all(|v| v.position[0] < 10.5)).unwrap();
+    assert_eq!(left.piece, 0);
+}
+
+#[test]
+fn open_cracks_that_cross_leave_one_hole() {
+    let region = square(20.0);
+    let scene = scene(region.clone());
+    let line = |a: (f64, f64), b: (f64, f64)| {
+        let at = |s: f64| Point::new(a.0 + s * (b.0 - a.0), a.1 + s * (b.1 - a.1));
+        Opened::symmetric(
+            vec![at(0.0), at(0.25), at(0.75), at(1.0)],
+            &[0.0, 1.0, 1.0, 0.0],
+            CrackEnd::Tip,
+            CrackEnd::Tip,
+        )
+    };
+    let meshes =
+        cracked(&scene, &frame(&region, 1, &[line((4.0, 10.0), (16.0, 10.0)), line((10.0, 4.0), (10.0, 16.0))]));
+    // Two spindles of 6 m at full width and two tips of 3 m each; they share a square of 1 m².
+    assert!((area(&meshes) - (400.0 - 2.0 * (6.0 + 3.0) + 1.0)).abs() < 1e-4, "{}", area(&meshes));
 }
 
 #[test]
