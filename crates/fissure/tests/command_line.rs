@@ -231,7 +231,8 @@ fn an_interrupted_run_resumes_to_the_same_bytes() {
         }
     }
     assert!(interrupts > 0, "the scene is too short to be interrupted");
-    expect(&run(folder.path(), &long("parts")), 0);
+    let text = expect(&run(folder.path(), &long("parts")), 0);
+    assert!(text.contains("resuming `parts/plate.take` after frame"), "{text}");
     assert_same_files(&folder.path().join("whole"), &folder.path().join("parts"));
 }
 
