@@ -46,7 +46,9 @@ pub(crate) enum Command {
     #[command(after_help = "Example:\n  fissure sim examples/pull/scene.toml && fissure post out/pull/pull.take")]
     Sim(SimArguments),
     /// Write the meshes of a take without simulating again.
-    #[command(after_help = "Example:\n  fissure post out/pull/pull.take --thickness 0.2 --formats glb,ply --frames 1-45x2")]
+    #[command(
+        after_help = "Example:\n  fissure post out/pull/pull.take --thickness 0.2 --formats glb,ply --frames 1-45x2"
+    )]
     Post(PostArguments),
     /// Print the JSON schema of scene files, for editors.
     #[command(after_help = "Example:\n  fissure schema > scene.schema.json")]

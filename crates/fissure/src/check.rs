@@ -26,15 +26,9 @@ fn text(scene: &Scene, estimate: &Estimate) -> String {
         ("particles", format!("{}, {} m apart", estimate.particles, scene.particle_spacing)),
         ("cells", format!("{}, {} m wide", estimate.cells, scene.cell_size)),
         ("formulation", estimate.formulation.clone()),
-        (
-            "time step",
-            format!("{} (stable up to {})", seconds(estimate.time_step), seconds(estimate.stable_time_step)),
-        ),
+        ("time step", format!("{} (stable up to {})", seconds(estimate.time_step), seconds(estimate.stable_time_step))),
         ("steps", estimate.steps.to_string()),
-        (
-            "frames",
-            format!("{}-{}, showing {}", frames.first, frames.last, seconds(frames.time(frames.last))),
-        ),
+        ("frames", format!("{}-{}, showing {}", frames.first, frames.last, seconds(frames.time(frames.last)))),
         ("expected time", format!("{} for the solver", duration(estimate.seconds))),
         ("expected memory", format!("{:.0} MiB for the solver", estimate.memory as f64 / (1024.0 * 1024.0))),
     ];

@@ -44,14 +44,7 @@ impl<'a> Mesher<'a> {
             options.parts.clone_from(&typed.parts);
         }
         let formats = if typed.formats.is_empty() { &scene.output.formats } else { &typed.formats };
-        Self {
-            scene,
-            folder: folder.to_owned(),
-            options,
-            formats: formats.clone(),
-            report,
-            outcome: Mutex::default(),
-        }
+        Self { scene, folder: folder.to_owned(), options, formats: formats.clone(), report, outcome: Mutex::default() }
     }
 
     /// Makes and writes the meshes of the frame that `get` gives. A failure is reported at once and remembered; the other frames go on.

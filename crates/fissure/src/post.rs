@@ -28,7 +28,9 @@ pub(crate) fn post(arguments: &PostArguments, report: &Report) -> Result<Exit, F
     }
     let folder = match &arguments.output {
         Some(folder) => folder.clone(),
-        None => arguments.take.canonicalize().ok().and_then(|path| path.parent().map(Path::to_owned)).unwrap_or_default(),
+        None => {
+            arguments.take.canonicalize().ok().and_then(|path| path.parent().map(Path::to_owned)).unwrap_or_default()
+        }
     };
     std::fs::create_dir_all(&folder).map_err(|error| Failure::file("make the folder", &folder, &error))?;
     let interrupt = Interrupt::listen();

@@ -37,7 +37,9 @@ impl Queue {
         match receiver.try_recv() {
             Ok(frame) => Some(Work::New(Box::new(frame))),
             Err(TryRecvError::Disconnected) => backlog(),
-            Err(TryRecvError::Empty) => backlog().or_else(|| receiver.recv().ok().map(|frame| Work::New(Box::new(frame)))),
+            Err(TryRecvError::Empty) => {
+                backlog().or_else(|| receiver.recv().ok().map(|frame| Work::New(Box::new(frame))))
+            }
         }
     }
 }

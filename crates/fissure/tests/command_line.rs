@@ -108,7 +108,10 @@ fn a_new_scene_checks_and_runs() {
         assert!(text.contains(word), "{word} is missing:\n{text}");
     }
     assert_eq!(names(folder.path()), ["mine/scene.toml"], "check writes nothing");
-    expect(&run(folder.path(), &["run", "mine/scene.toml", "--frames", "1-2", "--set", "grid.particle_spacing=0.5"]), 0);
+    expect(
+        &run(folder.path(), &["run", "mine/scene.toml", "--frames", "1-2", "--set", "grid.particle_spacing=0.5"]),
+        0,
+    );
     assert!(folder.path().join("out/mine/mine.0002.glb").is_file(), "{:?}", names(folder.path()));
 }
 
@@ -241,8 +244,7 @@ fn an_interrupted_run_resumes_to_the_same_bytes() {
 fn a_killed_run_resumes_to_the_same_bytes() {
     let folder = workplace();
     expect(&run(folder.path(), &long("whole")), 0);
-    let mut child =
-        fissure(folder.path(), &long("parts")).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let mut child = fissure(folder.path(), &long("parts")).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     signal_when(&child, &folder.path().join("parts/plate.take/frame.0005.safetensors"), "-KILL");
     assert_eq!(child.wait().unwrap().code(), None, "the scene is too short to be killed");
     expect(&run(folder.path(), &long("parts")), 0);
@@ -364,7 +366,10 @@ const TABLE: &[Bad] = &[
     },
     Bad {
         what: "guide away from the tip",
-        edit: (NOTCH, "line = [[0.0, 10.5], [0.0, 4.0]]\nguide = \"path\"\n[[guide]]\nname = \"path\"\nline = [[5, 0], [5, -10]]"),
+        edit: (
+            NOTCH,
+            "line = [[0.0, 10.5], [0.0, 4.0]]\nguide = \"path\"\n[[guide]]\nname = \"path\"\nline = [[5, 0], [5, -10]]",
+        ),
         says: &["path", "(5, 0)"],
         ..FINE
     },
@@ -423,7 +428,12 @@ const TABLE: &[Bad] = &[
         says: &["100-200", "1-12"],
         ..FINE
     },
-    Bad { what: "unknown format", arguments: &["run", "plate.toml", "--formats", "obj"], says: &["obj", "glb"], ..FINE },
+    Bad {
+        what: "unknown format",
+        arguments: &["run", "plate.toml", "--formats", "obj"],
+        says: &["obj", "glb"],
+        ..FINE
+    },
     Bad {
         what: "output that cannot be written",
         arguments: &["run", "plate.toml", "--output", "plate.toml/out"],
