@@ -5,10 +5,10 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 python="${PYTHON:-python3}"
 
-# Frames to show, and how: frames, then options of pipeline/picture.py.
+# Frames to show.
 shots() {
     case "$1" in
-        pull | pull-rotated | pull-guided) echo "16 28 48" ;;
+        pull | pull-rotated | pull-guided) echo "8 16 48" ;;
         drop-*) echo "24 28 45" ;;
         logo) echo "1 48" ;;
     esac
@@ -18,6 +18,12 @@ if [ "$#" -eq 0 ]; then set -- pull pull-rotated pull-guided drop-jello drop-sno
 for name in "$@"; do
     cargo run --release --quiet -- run "examples/$name/scene.toml" --formats glb --quiet
     files=()
-    for frame in $(shots "$name"); do files+=("$(printf 'out/%s/%s.%04d.glb' "$name" "$name" "$frame")"); done
+    for frame in $(shots "$name"); do
+        number="$(printf '%04d' "$frame")"
+        file="out/$name/$name.$number.glb"
+        floor="out/$name/${name}_collider.$number.glb"
+        if [ -f "$floor" ]; then file="$file+$floor"; fi
+        files+=("$file")
+    done
     "$python" pipeline/picture.py "${files[@]}" -o "examples/$name/picture.png"
 done
