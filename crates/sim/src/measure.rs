@@ -38,7 +38,8 @@ impl Gauge<'_> {
         };
         // The contour takes kernel averages around its points.
         let reach = if settings.j_method == JMethod::Contour { radius + 2.0 * h } else { radius };
-        let zone = solver.tip_zone(cracks, crack, end, reach);
+        let mut zone = solver.tip_zone(cracks, crack, end, reach);
+        zone.center_on_crack(h);
         let Some(nearest) = zone.points.iter().min_by(|a, b| a.place.norm_squared().total_cmp(&b.place.norm_squared()))
         else {
             return Measured::default();

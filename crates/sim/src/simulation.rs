@@ -362,19 +362,22 @@ impl Simulation {
     /// As [`Simulation::advance`].
     pub fn relax(&mut self, tolerance: f64, most_steps: u64) -> Result<u64, SimulationError> {
         let time_step = self.largest_time_step();
-        let mut last = 0.0;
+        let mut peak = 0.0;
+        let mut since = 0;
         for step in 1..=most_steps {
             self.solver.step(&self.state.cracks, 0.0, time_step, &mut |_| ())?;
             let kinetic = self.solver.kinetic_energy();
-            if kinetic < last {
+            since += 1;
+            if kinetic < peak && since >= STEPS_BETWEEN_STOPS {
                 self.solver.stop();
-                if last <= tolerance * self.solver.energies().strain {
+                if peak <= tolerance * self.solver.energies().strain {
                     self.measure_all();
                     return Ok(step);
                 }
-                last = 0.0;
+                peak = 0.0;
+                since = 0;
             } else {
-                last = kinetic;
+                peak = kinetic.max(peak);
             }
         }
         self.measure_all();
@@ -427,6 +430,10 @@ impl Simulation {
         })
     }
 }
+
+/// Steps between two stops of the kinetic damping at least: the ripple of the shortest waves would otherwise stop a slow motion again and again before
+/// it has begun.
+const STEPS_BETWEEN_STOPS: u32 = 12;
 
 /// A growing tip that has not moved for so many steps beyond its waiting time is at rest.
 const ARREST_STEPS: f64 = 50.0;

@@ -18,6 +18,24 @@ pub(crate) struct TipZone {
     pub(crate) opening_distance: f64,
 }
 
+impl TipZone {
+    /// Moves the origin sideways into the middle between the rows of particles on the two sides of the crack.
+    ///
+    /// Particles feel only on which side of the crack they are, so a crack along a row of particles acts as if it ran midway between the rows it
+    /// parts. Taking places from the drawn line instead gives a K_II of up to 1 % of K_I for an edge crack of 16 cells in pure tension.
+    pub(crate) fn center_on_crack(&mut self, cell_size: f64) {
+        let near = |p: &&QuadraturePoint| p.place.x.abs() < cell_size && p.place.y.abs() < cell_size;
+        let beside = |side: Side| {
+            self.points.iter().filter(near).filter(|p| p.side == side).map(|p| p.place.y.abs()).fold(f64::INFINITY, f64::min)
+        };
+        let (above, below) = (beside(Side::Above), beside(Side::Below));
+        if above.is_finite() && below.is_finite() {
+            let middle = 0.5 * (above - below);
+            self.points.iter_mut().for_each(|p| p.place.y -= middle);
+        }
+    }
+}
+
 /// One particle near a tip. Vectors and tensors in the tip frame.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct QuadraturePoint {
