@@ -10,7 +10,7 @@
 //! of the tip is never split. Gradients follow the product rule, ∇(b w) = b ∇w + w ∇b. The jump then ends at the tip.
 
 use crate::crossing::{NetCrossing, Side, crossing};
-use fissure_scene::{Point, TipDivision, Vector};
+use fissure_scene::{Point, TipDivision, Vector, orientation};
 use std::collections::HashMap;
 
 /// What a line crosses: sorted (crack, side of the particle); empty: nothing.
@@ -75,6 +75,8 @@ struct Line {
     segments: Vec<(Point, Point)>,
     tips: Vec<Tip>,
     kinds: Vec<SegmentKind>,
+    /// Segment of the crack that each prepared one is, or carries on.
+    of: Vec<u32>,
 }
 
 /// What a segment of a prepared line stands for.
@@ -130,6 +132,37 @@ impl Division {
     /// Whether a particle at `point` may have a divided pair at all.
     pub(crate) fn is_near(&self, point: Point) -> bool {
         !self.bucket(point).is_empty()
+    }
+
+    /// Cells of the lattice ⌊x/h⌋ around the origin in which [`Division::is_near`] holds, in no order.
+    pub(crate) fn near_cells(&self) -> impl Iterator<Item = (i64, i64)> {
+        self.buckets.keys().copied()
+    }
+
+    /// Whether a crack may divide the pair of a particle at `point` and any node of the box from `low` to `high`, which holds the
+    /// particle. When it says no, no pair is divided.
+    pub(crate) fn may_divide(&self, point: Point, low: Point, high: Point) -> bool {
+        self.bucket(point).iter().any(|&(line, segment)| {
+            let (a, b) = self.lines[line as usize].segments[segment as usize];
+            if a.x.max(b.x) < low.x || a.x.min(b.x) > high.x || a.y.max(b.y) < low.y || a.y.min(b.y) > high.y {
+                return false;
+            }
+            let corners = [low, Point::new(high.x, low.y), high, Point::new(low.x, high.y)];
+            let sides = corners.map(|corner| orientation(a, b, corner));
+            !(sides.iter().all(|&s| s > 0.0) || sides.iter().all(|&s| s < 0.0))
+        })
+    }
+
+    /// Calls `visit` with (crack, segment of it) for every segment that the line from `particle` to `node` crosses; a continuation counts as the
+    /// segment it carries on.
+    pub(crate) fn for_each_crossed(&self, particle: Point, node: Point, mut visit: impl FnMut(u32, usize)) {
+        for &(line, segment) in self.bucket(particle) {
+            let line = &self.lines[line as usize];
+            let (a, b) = line.segments[segment as usize];
+            if crossing(particle, node, a, b).is_some() {
+                visit(line.crack, line.of[segment as usize] as usize);
+            }
+        }
     }
 
     /// What the line from `particle` to `node` crosses.
@@ -218,13 +251,28 @@ fn prepare(line: &CrackLine, tip_division: TipDivision, cell_size: f64) -> Line 
         })
     };
     // All segments run from the start to the end of the crack, so that a line through a vertex is crossed just once.
+    let mut of: Vec<u32> = (0..segments.len() as u32).collect();
     if let Some(point) = carry_on(line.end, p[n - 1], ahead_of_end) {
         segments.push((p[n - 1], point));
+        of.push(n as u32 - 2);
     }
     if let Some(point) = carry_on(line.start, p[0], ahead_of_start) {
         segments.push((point, p[0]));
+        of.push(0);
     }
-    Line { crack: line.crack, segments, tips, kinds }
+    Line { crack: line.crack, segments, tips, kinds, of }
+}
+
+/// The crack across which two fields face each other, and the side of the first; none when they differ by more than one crack.
+pub(crate) fn facing(first: &[(u32, Side)], second: &[(u32, Side)]) -> Option<(u32, Side)> {
+    let only_first: Vec<_> = first.iter().filter(|x| !second.contains(x)).collect();
+    let only_second: Vec<_> = second.iter().filter(|x| !first.contains(x)).collect();
+    match (only_first.as_slice(), only_second.as_slice()) {
+        ([x], []) => Some(**x),
+        ([], [y]) => Some((y.0, y.1.opposite())),
+        ([x], [y]) if x.0 == y.0 => Some(**x),
+        _ => None,
+    }
 }
 
 /// How one crack divides a pair.

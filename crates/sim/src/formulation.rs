@@ -6,6 +6,7 @@ use crate::elastic::Elastic;
 use crate::particles::Particles;
 use crate::solver::Solver;
 use crate::total::Total;
+use crate::updated::Updated;
 use fissure_scene::{Formulation, LoadKind, Scene, bounds};
 
 /// A formulation and the reason for it.
@@ -98,8 +99,10 @@ pub(crate) fn build(
     particles: Particles,
     cracks: &[Crack],
 ) -> Result<Box<dyn Solver>, SimulationError> {
-    let _ = formulation;
-    Ok(Box::new(Total::new(scene, particles, cracks)?))
+    Ok(match formulation {
+        Formulation::Updated => Box::new(Updated::new(scene, particles, cracks)?),
+        _ => Box::new(Total::new(scene, particles, cracks)?),
+    })
 }
 
 /// Builds the solver with a saved state.
@@ -113,6 +116,8 @@ pub(crate) fn restore(
     cracks: &[Crack],
     state: &[u8],
 ) -> Result<Box<dyn Solver>, SimulationError> {
-    let _ = formulation;
-    Ok(Box::new(Total::restore(scene, particles, cracks, state)?))
+    Ok(match formulation {
+        Formulation::Updated => Box::new(Updated::restore(scene, particles, cracks, state)?),
+        _ => Box::new(Total::restore(scene, particles, cracks, state)?),
+    })
 }

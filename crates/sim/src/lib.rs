@@ -23,7 +23,10 @@ mod saved;
 mod simulation;
 mod solver;
 mod stress_intensity;
+#[cfg(test)]
+mod test_scenes;
 mod total;
+mod updated;
 mod williams;
 
 pub use constitutive::{

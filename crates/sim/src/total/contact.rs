@@ -7,6 +7,7 @@
 use super::Total;
 use crate::crack::Crack;
 use crate::crossing::Side;
+use crate::division::facing;
 use fissure_scene::Vector;
 
 /// Two fields of one node on the two sides of one crack.
@@ -88,17 +89,5 @@ impl Total {
             }
         }
         self.contacts = pairs;
-    }
-}
-
-/// The crack across which two fields face each other, and the side of the first; none when they differ by more than one crack.
-fn facing(first: &[(u32, Side)], second: &[(u32, Side)]) -> Option<(u32, Side)> {
-    let only_first: Vec<_> = first.iter().filter(|x| !second.contains(x)).collect();
-    let only_second: Vec<_> = second.iter().filter(|x| !first.contains(x)).collect();
-    match (only_first.as_slice(), only_second.as_slice()) {
-        ([x], []) => Some(**x),
-        ([], [y]) => Some((y.0, y.1.opposite())),
-        ([x], [y]) if x.0 == y.0 => Some(**x),
-        _ => None,
     }
 }

@@ -1,0 +1,245 @@
+//! Loads, supports, colliders, gravity, and the first velocities, as they act on nodes and particles.
+
+use super::{MaterialPoint, Updated};
+use crate::SimulationError;
+use crate::collider::PlacedObstacle;
+use crate::particles::{EdgeLine, selects};
+use fissure_scene::{LoadKind, Matrix, Point, Selection, Vector};
+
+impl Updated {
+    /// The forces of each load as forces on particles.
+    pub(super) fn forces_of_loads(&self) -> Result<Vec<Vec<(u32, Vector)>>, SimulationError> {
+        let mut loads = Vec::new();
+        for (index, load) in self.scene.loads.iter().enumerate() {
+            let forces: Vec<(u32, Vector)> = match &load.kind {
+                LoadKind::Force(total) => {
+                    let selected = self.particles.select(&self.scene, &load.selection);
+                    let volume: f64 = selected.iter().map(|&p| self.particles.volume[p as usize]).sum();
+                    selected.iter().map(|&p| (p, total * (self.particles.volume[p as usize] / volume))).collect()
+                }
+                LoadKind::Traction(traction) => self.traction_forces(&load.selection, *traction),
+                LoadKind::PerPoint(values) => {
+                    let all: Vec<u32> = (0..self.particles.len() as u32).collect();
+                    values.iter().filter_map(|&(place, force)| Some((self.nearest(&all, place)?, force))).collect()
+                }
+            };
+            if forces.is_empty() {
+                return Err(SimulationError::EmptySelection { what: format!("load {}", index + 1) });
+            }
+            loads.push(forces);
+        }
+        Ok(loads)
+    }
+
+    /// The particle of `among` that is nearest to `place` at rest.
+    fn nearest(&self, among: &[u32], place: Point) -> Option<u32> {
+        let distance = |&p: &u32| (self.particles.rest[p as usize] - place).norm_squared();
+        among.iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b)))
+    }
+
+    /// A traction on the parts of the rings that lie on the selected edge, by their length, each piece on the particle nearest to it.
+    fn traction_forces(&self, selection: &Selection, traction: Vector) -> Vec<(u32, Vector)> {
+        let layer = self.particles.select(&self.scene, selection);
+        let mut forces = Vec::new();
+        for (index, body) in self.scene.bodies.iter().enumerate() {
+            for ring in body.region.rings() {
+                for i in 0..ring.len() {
+                    let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
+                    if !self.edge_selected(selection, index, a, b) {
+                        continue;
+                    }
+                    let pieces = ((b - a).norm() / self.particles.spacing).round().max(1.0) as usize;
+                    let share = traction * ((b - a).norm() / pieces as f64);
+                    for k in 0..pieces {
+                        let place = a + (b - a) * ((k as f64 + 0.5) / pieces as f64);
+                        forces.extend(self.nearest(&layer, place).map(|p| (p, share)));
+                    }
+                }
+            }
+        }
+        forces
+    }
+
+    fn edge_selected(&self, selection: &Selection, body: usize, a: Point, b: Point) -> bool {
+        let slack = 1e-6 * self.scene.cell_size;
+        match selection {
+            Selection::Edge { side, body: of } => {
+                let line = EdgeLine::of(&self.scene, *side, *of);
+                of.is_none_or(|o| o == body) && line.depth(a).abs() <= slack && line.depth(b).abs() <= slack
+            }
+            _ => [a, b, nalgebra::center(&a, &b)].iter().all(|&p| selects(&self.scene, selection, p, body, slack)),
+        }
+    }
+
+    /// The particles that each support holds, chosen at rest.
+    pub(super) fn particles_of_supports(&self) -> Result<Vec<Vec<u32>>, SimulationError> {
+        let mut held = Vec::new();
+        for (index, support) in self.scene.supports.iter().enumerate() {
+            let selected = self.particles.select(&self.scene, &support.selection);
+            if selected.is_empty() {
+                return Err(SimulationError::EmptySelection { what: format!("support {}", index + 1) });
+            }
+            held.push(selected);
+        }
+        Ok(held)
+    }
+
+    /// Velocities at time zero.
+    pub(super) fn set_initial_velocities(&mut self) {
+        for p in 0..self.particles.len() {
+            let body = self.particles.body[p] as usize;
+            let place = self.particles.rest[p];
+            for part in &self.scene.bodies[body].velocities {
+                if selects(&self.scene, &part.selection, place, body, 0.0) {
+                    let arm = place - part.center;
+                    self.state.points[p].velocity += part.velocity + Vector::new(-arm.y, arm.x) * part.angular_velocity;
+                    if let Some(c) = self.state.affine.get_mut(p) {
+                        *c += Matrix::new(0.0, -part.angular_velocity, part.angular_velocity, 0.0);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Adds the loads in the middle of the step to the forces on nodes.
+    pub(super) fn add_loads(&mut self, time: f64, time_step: f64) {
+        if self.loads.is_empty() {
+            return;
+        }
+        let grid = self.grid();
+        let mut force = std::mem::take(&mut self.nodes.after);
+        for (load, forces) in self.scene.loads.iter().zip(&self.loads) {
+            let factor = load.curve.value(time + 0.5 * time_step);
+            if factor == 0.0 {
+                continue;
+            }
+            for &(p, f) in forces {
+                let f = f * factor;
+                self.for_each_entry(&grid, p as usize, |field, w| {
+                    force[0][field] += w * f.x;
+                    force[1][field] += w * f.y;
+                });
+            }
+        }
+        self.nodes.after = force;
+    }
+
+    /// Work of loads and gravity: material moves by Σ v_i w_ip Δt, so that Σ f·v Δt is exact.
+    pub(super) fn count_work(&mut self, time: f64, time_step: f64) {
+        let mut power = 0.0;
+        for (load, forces) in self.scene.loads.iter().zip(&self.loads) {
+            let factor = load.curve.value(time + 0.5 * time_step);
+            for &(p, f) in forces {
+                power += factor * f.dot(&self.gather_at_particle(p as usize).velocity);
+            }
+        }
+        let g = self.scene.gravity;
+        if g != Vector::zeros() {
+            let [vx, vy] = &self.nodes.after;
+            power += self
+                .nodes
+                .mass
+                .iter()
+                .zip(vx.iter().zip(vy))
+                .map(|(m, (vx, vy))| m * (g.x * vx + g.y * vy))
+                .sum::<f64>();
+        }
+        self.state.external_work += power * time_step;
+    }
+
+    /// Prescribed velocities on nodes, as far as the mass of a node is held. Whether any node was.
+    pub(super) fn hold_nodes(&mut self, time: f64, time_step: f64) -> bool {
+        if self.held.is_empty() {
+            return false;
+        }
+        let grid = self.grid();
+        let mut held_mass = vec![0.0; self.nodes.mass.len()];
+        let mut touched: Vec<usize> = Vec::new();
+        let mut work = 0.0;
+        for (support, particles) in self.scene.supports.iter().zip(&self.held) {
+            touched.clear();
+            for &p in particles {
+                let m = self.particles.mass[p as usize];
+                self.for_each_entry(&grid, p as usize, |field, w| {
+                    if w > 0.0 {
+                        if held_mass[field] == 0.0 {
+                            touched.push(field);
+                        }
+                        held_mass[field] += m * w;
+                    }
+                });
+            }
+            let factor = support.curve.value(time + 0.5 * time_step);
+            for &field in &touched {
+                let mass = self.nodes.mass[field];
+                let part = (held_mass[field] / mass).min(1.0);
+                for axis in 0..2 {
+                    let Some(speed) = support.velocity[axis] else { continue };
+                    let v = &mut self.nodes.after[axis][field];
+                    let change = (speed * factor - *v) * part;
+                    *v += change;
+                    // The force that does it moves along with the prescribed velocity.
+                    work += mass * change * speed * factor;
+                }
+                held_mass[field] = 0.0;
+            }
+        }
+        self.state.external_work += work;
+        true
+    }
+
+    /// Places of the held particles before they move, support by support.
+    pub(super) fn held_places(&self, points: &[MaterialPoint]) -> Vec<Vec<Point>> {
+        self.held.iter().map(|ps| ps.iter().map(|&p| points[p as usize].position).collect()).collect()
+    }
+
+    /// Prescribed velocities on the particles themselves: they move exactly as prescribed.
+    pub(super) fn hold_particles(&mut self, places: &[Vec<Point>], time: f64, time_step: f64) {
+        let mut work = 0.0;
+        for ((support, particles), places) in self.scene.supports.iter().zip(&self.held).zip(places) {
+            let factor = support.curve.value(time + 0.5 * time_step);
+            for (&p, place) in particles.iter().zip(places) {
+                let point = &mut self.state.points[p as usize];
+                for axis in 0..2 {
+                    let Some(speed) = support.velocity[axis] else { continue };
+                    let after = speed * factor;
+                    work += self.particles.mass[p as usize] * (after - point.velocity[axis]) * after;
+                    point.velocity[axis] = after;
+                    point.position[axis] = place[axis] + time_step * after;
+                    if let Some(c) = self.state.affine.get_mut(p as usize) {
+                        c.row_mut(axis).fill(0.0);
+                    }
+                }
+            }
+        }
+        self.state.external_work += work;
+    }
+
+    /// Obstacles on nodes (thesis 3.1.4). Whether there are any.
+    pub(super) fn collide_nodes(&mut self, time: f64, time_step: f64) -> bool {
+        if self.colliders.is_empty() {
+            return false;
+        }
+        let grid = self.grid();
+        let mut work = 0.0;
+        for collider in &self.colliders {
+            let placed: PlacedObstacle<'_> = collider.at(time + 0.5 * time_step);
+            for field in 0..self.nodes.mass.len() {
+                let mass = self.nodes.mass[field];
+                if mass <= 0.0 {
+                    continue;
+                }
+                let place = grid.position(self.cut.node(field));
+                let before = self.nodes.velocity(field);
+                let after = placed.resolve(before, place);
+                if after != before {
+                    work += mass * (after - before).dot(&placed.velocity(place));
+                    self.nodes.after[0][field] = after.x;
+                    self.nodes.after[1][field] = after.y;
+                }
+            }
+        }
+        self.state.external_work += work;
+        true
+    }
+}

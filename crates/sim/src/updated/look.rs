@@ -1,0 +1,255 @@
+//! Looking at the solver: what is around a tip, what a frame holds.
+
+use super::Updated;
+use crate::crack::{Crack, slot};
+use crate::crossing::Side;
+use crate::solver::{Observed, QuadraturePoint, TipZone};
+use fissure_scene::{CrackEnd, CrackFrame, End, Matrix, OutlineFrame, ParticleFrame, Point, Vector, orientation};
+
+/// A moment in the middle of a step: positions, deformations and accelerations of the step's beginning; velocities on the grid are half a step ahead and
+/// taken back by half the acceleration.
+#[derive(Debug)]
+pub(super) struct Moment<'a> {
+    pub(super) solver: &'a Updated,
+    pub(super) time_step: f64,
+}
+
+/// Behind a tip, in cells, where the opening is taken. 1 to 3 cells: nearer, the tip's own discretisation shows; farther, the next term of the series.
+const OPENING_DISTANCE: f64 = 1.5;
+
+/// Segments behind a tip that are looked at for the side of a place; more than any integral reaches.
+const SEGMENTS_BEHIND: usize = 40;
+
+impl Observed for Moment<'_> {
+    fn tip_zone(&self, cracks: &[Crack], crack: usize, end: End, radius: f64) -> TipZone {
+        self.solver.zone(cracks, crack, end, radius, Some(self.time_step))
+    }
+
+    fn tip_now(&self, cracks: &[Crack], crack: usize, end: End) -> (Point, Vector) {
+        self.solver.tip_now(cracks, crack, end)
+    }
+}
+
+/// Between steps there is no grid: velocities are those of the particles, accelerations those of the last step.
+impl Observed for Updated {
+    fn tip_zone(&self, cracks: &[Crack], crack: usize, end: End, radius: f64) -> TipZone {
+        self.zone(cracks, crack, end, radius, None)
+    }
+
+    fn tip_now(&self, cracks: &[Crack], crack: usize, end: End) -> (Point, Vector) {
+        let points = &self.state.cracks[crack].position;
+        let n = points.len();
+        let (now, behind) = match end {
+            End::Start => (points[0], points[1]),
+            End::End => (points[n - 1], points[n - 2]),
+        };
+        let ahead = now - behind;
+        let length = ahead.norm();
+        (now, if length > 0.0 { ahead / length } else { cracks[crack].ahead(end) })
+    }
+}
+
+/// A turn by the angle whose tangent is `sine`/`cosine`, and what it differs from the identity, without cancellation.
+fn turn(cosine: f64, sine: f64) -> (Matrix, Matrix) {
+    let r = cosine.hypot(sine);
+    let (c, s) = if r > 0.0 { (cosine / r, sine / r) } else { (1.0, 0.0) };
+    let c_minus_one = if c > 0.0 { -s * s / (1.0 + c) } else { c - 1.0 };
+    (Matrix::new(c, -s, s, c), Matrix::new(c_minus_one, -s, s, c_minus_one))
+}
+
+impl Updated {
+    /// The current configuration around a tip. The displacement is measured from the rest configuration turned as the surroundings of the tip
+    /// are: a turn of the whole body then leaves no gradient.
+    fn zone(&self, cracks: &[Crack], crack: usize, end: End, radius: f64, time_step: Option<f64>) -> TipZone {
+        let (tip, ahead) = self.tip_now(cracks, crack, end);
+        let mut found: Vec<(usize, Matrix)> = Vec::new();
+        let mut mean = Matrix::zeros();
+        for (p, point) in self.state.points.iter().enumerate() {
+            if (point.position - tip).norm_squared() < radius * radius && self.particles.body[p] == cracks[crack].body {
+                let h = self.total_gradient(p);
+                mean += h;
+                found.push((p, h));
+            }
+        }
+        let mean = mean / found.len().max(1) as f64;
+        let (rotation, rotation_minus_one) = turn(2.0 + mean.m11 + mean.m22, mean.m21 - mean.m12);
+        let frame = Matrix::new(ahead.x, ahead.y, -ahead.y, ahead.x);
+        let into = |m: Matrix| frame * m * frame.transpose();
+        let mut points = Vec::with_capacity(found.len());
+        for (p, h) in found {
+            let point = &self.state.points[p];
+            let (mu, lambda) = self.moduli(p);
+            let ratio = 1.0 + crate::volume_change(&h);
+            // I − F⁻¹ = F⁻¹ H, so that small strains keep their digits; then R: I − R F⁻¹ = R (I − F⁻¹) − (R − I).
+            let inverse = Matrix::new(1.0 + h.m22, -h.m12, -h.m21, 1.0 + h.m11) / ratio;
+            let gradient = rotation * (inverse * h) - rotation_minus_one;
+            let (velocity, motion) = match time_step {
+                None => (point.velocity, self.motion.get(p).copied().unwrap_or_default()),
+                Some(time_step) => {
+                    let g = self.gather_at_particle(p);
+                    ((g.velocity + g.before) * 0.5, g.motion(time_step))
+                }
+            };
+            let elastic = &point.elastic_gradient;
+            points.push(QuadraturePoint {
+                place: frame * (point.position - tip),
+                side: self.side_of(crack, end, tip, ahead, point.position),
+                volume: self.particles.volume[p] * ratio,
+                stress: into(crate::kirchhoff_stress(elastic, mu, lambda) / ratio),
+                gradient: into(gradient),
+                energy: crate::energy_density(elastic, mu, lambda) / ratio,
+                density: self.elastic[self.particles.material[p] as usize].density / ratio,
+                velocity: frame * velocity,
+                velocity_slope: frame * (motion.velocity_gradient * ahead),
+                acceleration: frame * motion.acceleration,
+                material: self.particles.material[p],
+            });
+        }
+        let (opening, opening_distance) = self.opening(crack, end);
+        TipZone { points, opening: frame * opening, opening_distance }
+    }
+
+    /// Crack points from a tip backwards.
+    fn backwards(&self, crack: usize, end: End) -> Vec<usize> {
+        let n = self.state.cracks[crack].position.len();
+        match end {
+            End::End => (0..n).rev().collect(),
+            End::Start => (0..n).collect(),
+        }
+    }
+
+    /// The face of the crack that a place sees, as a side of the tip frame: that of the nearest segment behind the tip, of the tip's own line ahead.
+    fn side_of(&self, crack: usize, end: End, tip: Point, ahead: Vector, place: Point) -> Side {
+        let points = &self.state.cracks[crack].position;
+        let mut sign = ahead.perp(&(place - tip));
+        if (place - tip).dot(&ahead) < 0.0 {
+            let n = points.len();
+            let mut nearest = f64::INFINITY;
+            for k in 0..(n - 1).min(SEGMENTS_BEHIND) {
+                // Towards the tip, so that the left side is that of e2.
+                let (a, b) = match end {
+                    End::End => (points[n - 2 - k], points[n - 1 - k]),
+                    End::Start => (points[k + 1], points[k]),
+                };
+                let distance = crate::particles::distance_to_segment(place, a, b);
+                if distance < nearest {
+                    nearest = distance;
+                    sign = orientation(a, b, place);
+                }
+            }
+        }
+        if sign >= 0.0 { Side::Above } else { Side::Below }
+    }
+
+    /// Opening of the faces some way behind a tip, left minus right as seen from the tip looking ahead [m], and that distance [m].
+    fn opening(&self, crack: usize, end: End) -> (Vector, f64) {
+        let now = &self.state.cracks[crack];
+        let wanted = OPENING_DISTANCE * self.scene.cell_size;
+        // Above is the left side for one who walks to the end of the crack.
+        let sign = if end == End::End { 1.0 } else { -1.0 };
+        let jump = |k: usize| (now.faces[0][k] - now.faces[1][k]) * sign;
+        let mut distance = 0.0;
+        let mut last = (Vector::zeros(), 0.0);
+        for w in self.backwards(crack, end).windows(2) {
+            let length = (now.position[w[1]] - now.position[w[0]]).norm();
+            if distance + length >= wanted {
+                let t = (wanted - distance) / length;
+                return (jump(w[0]) * (1.0 - t) + jump(w[1]) * t, wanted);
+            }
+            distance += length;
+            last = (jump(w[1]), distance);
+        }
+        last
+    }
+
+    pub(super) fn kinetic(&self) -> f64 {
+        let twice: f64 =
+            self.state.points.iter().zip(&self.particles.mass).map(|(p, m)| m * p.velocity.norm_squared()).sum();
+        0.5 * twice
+    }
+
+    pub(super) fn strain_energy(&self) -> f64 {
+        let energy = |(p, point): (usize, &super::MaterialPoint)| {
+            let (mu, lambda) = self.moduli(p);
+            self.particles.volume[p] * crate::energy_density(&point.elastic_gradient, mu, lambda)
+        };
+        self.state.points.iter().enumerate().map(energy).sum()
+    }
+
+    pub(super) fn frame_of_particles(&self) -> ParticleFrame {
+        let n = self.particles.len();
+        let mut frame = ParticleFrame {
+            id: (0..n as u32).collect(),
+            body: self.particles.body.clone(),
+            piece: vec![0; n],
+            rest: self.particles.rest.clone(),
+            ..ParticleFrame::default()
+        };
+        for (p, point) in self.state.points.iter().enumerate() {
+            let (mu, lambda) = self.moduli(p);
+            let h = self.total_gradient(p);
+            let ratio = 1.0 + crate::volume_change(&h);
+            frame.position.push(point.position);
+            frame.velocity.push(point.velocity);
+            frame.deformation_gradient.push(Matrix::identity() + h);
+            frame.cauchy_stress.push(crate::kirchhoff_stress(&point.elastic_gradient, mu, lambda) / ratio);
+        }
+        frame
+    }
+
+    pub(super) fn frames_of_outlines(&self) -> Vec<OutlineFrame> {
+        let mut frames = Vec::new();
+        let mut rings = self.state.outlines.iter();
+        for (body, b) in self.scene.bodies.iter().enumerate() {
+            for (ring, tracers) in (0..=b.region.holes.len()).zip(rings.by_ref()) {
+                let now = tracers.iter().map(|t| match t.face {
+                    None => (t.position, t.velocity),
+                    Some((crack, face, end)) => {
+                        let crack = &self.state.cracks[crack as usize];
+                        let k = if end == 0 { 0 } else { crack.position.len() - 1 };
+                        (crack.faces[face as usize][k], crack.velocities[face as usize][k])
+                    }
+                });
+                let (position, velocity) = now.unzip();
+                frames.push(OutlineFrame {
+                    body: body as u32,
+                    ring: ring as u32,
+                    rest: tracers.iter().map(|t| t.rest).collect(),
+                    position,
+                    velocity,
+                });
+            }
+        }
+        frames
+    }
+
+    pub(super) fn frames_of_cracks(&self, cracks: &[Crack]) -> Vec<CrackFrame> {
+        let mut frames = Vec::new();
+        for (index, (crack, now)) in cracks.iter().zip(&self.state.cracks).enumerate() {
+            let [mut above, mut below] = now.faces.clone();
+            let [mut above_velocity, mut below_velocity] = now.velocities.clone();
+            for end in crate::crack::ENDS {
+                if crack.ends[slot(end)] == CrackEnd::Tip {
+                    // The faces meet at a tip.
+                    let k = if end == End::Start { 0 } else { above.len() - 1 };
+                    let middle = nalgebra::center(&above[k], &below[k]);
+                    let velocity = (above_velocity[k] + below_velocity[k]) * 0.5;
+                    (above[k], below[k]) = (middle, middle);
+                    (above_velocity[k], below_velocity[k]) = (velocity, velocity);
+                }
+            }
+            frames.push(CrackFrame {
+                crack: index as u32,
+                body: crack.body,
+                rest: now.rest.clone(),
+                above,
+                below,
+                above_velocity,
+                below_velocity,
+                start: crack.ends[0],
+                end: crack.ends[1],
+            });
+        }
+        frames
+    }
+}

@@ -1,0 +1,293 @@
+//! Updated Lagrangian Material Point Method: particles carry everything, every step has a fresh background grid.
+//!
+//! The scheme of the thesis (Fumoto 2022, section 3.1; MPM after Stomakhin et al. 2013, explicit cracks after Nairn 2003) with its errata
+//! corrected, and beside it other kernels and transfers. Stress is updated last in a step (USL), from the velocities at the end of it: positions and
+//! deformations then advance with one and the same velocity field, the symplectic Euler scheme.
+//!
+//! Where this differs from the thesis: the displacement jump of crack contact takes the gradient of displacement into account (`contact`),
+//! and nodes without material are left out of the motion of crack points and outlines by a linear fit (`faces`).
+
+mod boundary;
+mod contact;
+mod faces;
+mod look;
+mod plastic;
+mod stability;
+mod stencils;
+#[cfg(test)]
+mod tests;
+mod transfer;
+
+use crate::SimulationError;
+use crate::collider::Obstacle;
+use crate::crack::Crack;
+use crate::division::{CrackLine, Division};
+use crate::elastic::Elastic;
+use crate::kernel;
+use crate::particles::Particles;
+use crate::solver::{Observed, Solver, SolverEnergies};
+use faces::{CrackNow, Tracer};
+use fissure_scene::{
+    CrackFrame, End, Matrix, OutlineFrame, ParticleFrame, Point, Scene, SolverSettings, Transfer, Vector,
+};
+use plastic::PlasticPart;
+use serde::{Deserialize, Serialize};
+use stencils::{Cut, Nodes, RowOrder};
+
+/// What every particle carries; one cache line.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+struct MaterialPoint {
+    /// x_p [m].
+    position: Point,
+    /// v_p [m/s].
+    velocity: Vector,
+    /// H = F_E − I [–]: a strain of 1e-9 keeps its digits.
+    elastic_gradient: Matrix,
+}
+
+/// The state that cannot be laid anew from the scene and the cracks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct State {
+    /// One entry per particle.
+    points: Vec<MaterialPoint>,
+    /// Affine velocity C_p [1/s] of each particle; empty unless the transfer is APIC.
+    affine: Vec<Matrix>,
+    /// Plastic part of each particle; empty when every material is elastic.
+    plastic: Vec<PlasticPart>,
+    /// Where the cracks are now.
+    cracks: Vec<CrackNow>,
+    /// The rings of the bodies, doubled at mouths.
+    outlines: Vec<Vec<Tracer>>,
+    /// Work done by loads, gravity, supports and colliders so far [J/m].
+    external_work: f64,
+}
+
+/// The updated Lagrangian solver.
+#[derive(Debug)]
+pub(crate) struct Updated {
+    scene: Scene,
+    settings: SolverSettings,
+    elastic: Vec<Elastic>,
+    particles: Particles,
+    colliders: Vec<Obstacle>,
+    /// Per load: (particle, force at a curve factor of 1 [N/m]).
+    loads: Vec<Vec<(u32, Vector)>>,
+    /// Particles that each support holds.
+    held: Vec<Vec<u32>>,
+    /// Largest stable c_d Δt / h of each material [–].
+    stable_number: Vec<f64>,
+    /// More nodes than this mean that material has left [–].
+    most_nodes: usize,
+    state: State,
+    // What follows is made anew in every step.
+    division: Division,
+    nodes: Nodes,
+    order: RowOrder,
+    cut: Cut,
+    /// What each particle did in the last step, for a look between steps; empty in a scene without a crack, and before the first step.
+    motion: Vec<Motion>,
+}
+
+/// The motion of a particle in a step.
+#[derive(Debug, Clone, Copy, Default)]
+struct Motion {
+    /// [m/s²].
+    acceleration: Vector,
+    /// ∇v [1/s].
+    velocity_gradient: Matrix,
+}
+
+/// The grid may become so many times as large as at rest, and at least [`FEWEST_NODES`], before material counts as lost.
+const LARGEST_GRID: usize = 64;
+/// See [`LARGEST_GRID`].
+const FEWEST_NODES: usize = 4_000_000;
+
+impl Updated {
+    /// Lays particles, crack points and outlines at rest, with their first velocities.
+    ///
+    /// # Errors
+    /// When a load or support selects nothing.
+    pub(crate) fn new(scene: &Scene, particles: Particles, cracks: &[Crack]) -> Result<Self, SimulationError> {
+        let count = particles.len();
+        let points = particles
+            .rest
+            .iter()
+            .map(|&position| MaterialPoint { position, velocity: Vector::zeros(), elastic_gradient: Matrix::zeros() })
+            .collect();
+        let is_plastic = scene.materials.iter().any(|m| m.plasticity.is_some());
+        let state = State {
+            points,
+            affine: if scene.solver.transfer == Transfer::Apic { vec![Matrix::zeros(); count] } else { Vec::new() },
+            plastic: if is_plastic { vec![PlasticPart::NONE; count] } else { Vec::new() },
+            cracks: cracks.iter().map(CrackNow::at_rest).collect(),
+            outlines: Vec::new(),
+            external_work: 0.0,
+        };
+        let mut solver = Self::around(scene, particles, state)?;
+        solver.lay_outlines(cracks);
+        solver.set_initial_velocities();
+        Ok(solver)
+    }
+
+    /// Goes on from what [`Solver::save`] gave, bit for bit. `cracks` are those of the same moment.
+    ///
+    /// # Errors
+    /// [`SimulationError::BadState`] when the bytes are damaged or belong to another scene.
+    pub(crate) fn restore(
+        scene: &Scene,
+        particles: Particles,
+        cracks: &[Crack],
+        bytes: &[u8],
+    ) -> Result<Self, SimulationError> {
+        let state: State = crate::saved::from_bytes(bytes)?;
+        let count = particles.len();
+        let fits = |length: usize| length == count || length == 0;
+        let same_cracks = state.cracks.len() == cracks.len()
+            && state.cracks.iter().zip(cracks).all(|(now, crack)| now.rest == crack.points);
+        if state.points.len() != count || !fits(state.affine.len()) || !fits(state.plastic.len()) || !same_cracks {
+            return Err(SimulationError::BadState("it belongs to another scene".into()));
+        }
+        Self::around(scene, particles, state)
+    }
+
+    fn around(scene: &Scene, particles: Particles, state: State) -> Result<Self, SimulationError> {
+        let elastic: Vec<Elastic> = scene.materials.iter().map(|m| Elastic::new(m, scene.plane)).collect();
+        let stable_number = elastic.iter().map(|e| stability::stable_number(scene, e)).collect();
+        let (low, high) = fissure_scene::bounds(&particles.rest);
+        let cells = (high - low) / scene.cell_size;
+        let most_nodes = (LARGEST_GRID * (cells.x as usize + 8) * (cells.y as usize + 8)).max(FEWEST_NODES);
+        let mut solver = Self {
+            settings: scene.solver,
+            elastic,
+            colliders: scene.colliders.iter().map(Obstacle::new).collect(),
+            loads: Vec::new(),
+            held: Vec::new(),
+            stable_number,
+            most_nodes,
+            state,
+            division: Division::new(&[], scene.solver.tip_division, scene.cell_size, scene.particle_spacing, 0.0),
+            nodes: Nodes::default(),
+            order: RowOrder::default(),
+            cut: Cut::default(),
+            motion: Vec::new(),
+            scene: scene.clone(),
+            particles,
+        };
+        solver.loads = solver.forces_of_loads()?;
+        solver.held = solver.particles_of_supports()?;
+        Ok(solver)
+    }
+
+    fn has_cracks(&self) -> bool {
+        !self.state.cracks.is_empty()
+    }
+
+    /// The cracks where they are now, ready to divide pairs.
+    fn division_now(&self, cracks: &[Crack]) -> Division {
+        // A line from a particle inside the body to a node outside may pass a mouth by as much as the kernel reaches.
+        let reach = 0.5 * kernel::width(self.settings.kernel) as f64;
+        let beyond = 2.0 * reach * self.scene.cell_size;
+        let lines: Vec<CrackLine> = cracks
+            .iter()
+            .zip(&self.state.cracks)
+            .enumerate()
+            .map(|(i, (crack, now))| crack.line(i, now.position.clone(), beyond))
+            .collect();
+        Division::new(&lines, self.settings.tip_division, self.scene.cell_size, self.scene.particle_spacing, reach)
+    }
+
+    /// Elastic constants (μ, λ) of a particle, hardening included [Pa].
+    #[inline]
+    fn moduli(&self, particle: usize) -> (f64, f64) {
+        let elastic = &self.elastic[self.particles.material[particle] as usize];
+        match self.state.plastic.get(particle) {
+            None => (elastic.mu, elastic.lambda),
+            Some(part) => (elastic.mu * part.hardening, elastic.lambda * part.hardening),
+        }
+    }
+
+    /// H = F − I of a particle, elastic and plastic part together.
+    fn total_gradient(&self, particle: usize) -> Matrix {
+        let h = self.state.points[particle].elastic_gradient;
+        match self.state.plastic.get(particle) {
+            None => h,
+            Some(part) => part.gradient - Matrix::identity() + h * part.gradient,
+        }
+    }
+}
+
+impl Solver for Updated {
+    fn stable_time_step(&self) -> f64 {
+        self.largest_stable_step()
+    }
+
+    fn step(
+        &mut self,
+        cracks: &[Crack],
+        time: f64,
+        time_step: f64,
+        observe: &mut dyn FnMut(&dyn Observed),
+    ) -> Result<(), SimulationError> {
+        self.lay_grid(cracks, time)?;
+        // Thesis 3.1.1 and 3.1.2: mass, momentum and the forces of the stresses.
+        self.particles_to_grid();
+        self.add_loads(time, time_step);
+        self.update_grid_velocities(time_step);
+        // 3.1.3 to 3.1.4.
+        let contacts = self.crack_contacts();
+        self.resolve_crack_contact(&contacts);
+        let impulses_changed = self.hold_nodes(time, time_step) | self.collide_nodes(time, time_step);
+        if impulses_changed {
+            self.resolve_crack_contact(&contacts);
+        }
+        self.count_work(time, time_step);
+        observe(&look::Moment { solver: self, time_step });
+        // 3.1.7: with the velocities of this step, before the particles leave their places.
+        self.move_cracks(cracks, time_step);
+        self.move_outlines(time_step);
+        // 3.1.5 and 3.1.6.
+        self.grid_to_particles(time, time_step)
+    }
+
+    fn recut(&mut self, cracks: &[Crack], changed: &[(usize, End)]) {
+        self.take_up(cracks, changed);
+    }
+
+    fn observed(&self) -> &dyn Observed {
+        self
+    }
+
+    fn kinetic_energy(&self) -> f64 {
+        self.kinetic()
+    }
+
+    fn stop(&mut self) {
+        self.state.points.iter_mut().for_each(|p| p.velocity = Vector::zeros());
+        self.state.affine.fill(Matrix::zeros());
+        self.motion.fill(Motion::default());
+    }
+
+    fn energies(&self) -> SolverEnergies {
+        SolverEnergies {
+            kinetic: self.kinetic(),
+            strain: self.strain_energy(),
+            external_work: self.state.external_work,
+        }
+    }
+
+    fn particle_frame(&self) -> ParticleFrame {
+        self.frame_of_particles()
+    }
+
+    fn outline_frames(&self) -> Vec<OutlineFrame> {
+        self.frames_of_outlines()
+    }
+
+    fn crack_frames(&self, cracks: &[Crack]) -> Vec<CrackFrame> {
+        self.frames_of_cracks(cracks)
+    }
+
+    fn save(&self) -> Vec<u8> {
+        crate::saved::to_bytes(&self.state)
+    }
+}
