@@ -26,7 +26,12 @@ impl TipZone {
     pub(crate) fn center_on_crack(&mut self, cell_size: f64) {
         let near = |p: &&QuadraturePoint| p.place.x.abs() < cell_size && p.place.y.abs() < cell_size;
         let beside = |side: Side| {
-            self.points.iter().filter(near).filter(|p| p.side == side).map(|p| p.place.y.abs()).fold(f64::INFINITY, f64::min)
+            self.points
+                .iter()
+                .filter(near)
+                .filter(|p| p.side == side)
+                .map(|p| p.place.y.abs())
+                .fold(f64::INFINITY, f64::min)
         };
         let (above, below) = (beside(Side::Above), beside(Side::Below));
         if above.is_finite() && below.is_finite() {

@@ -45,6 +45,13 @@ impl CutParticles {
         &self.entries[self.first[row] as usize..self.first[row + 1] as usize]
     }
 
+    /// Calls `visit` with every particle and its entries.
+    pub(super) fn for_each(&self, mut visit: impl FnMut(usize, &[Entry])) {
+        for (row, &particle) in self.particle.iter().enumerate() {
+            visit(particle as usize, self.row_entries(row));
+        }
+    }
+
     /// Puts new stencils in the place of old ones; particles that had none are added.
     pub(super) fn replace(&mut self, stencils: Vec<(usize, Vec<Entry>)>) {
         let mut news: Vec<Option<Vec<Entry>>> = vec![None; self.particle.len()];

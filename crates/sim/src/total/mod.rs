@@ -4,6 +4,7 @@
 //! P = ∂Ψ/∂F, H = F − I = Σ_i u_i ⊗ ∇₀w_ip, f_i = −Σ_p V_p P_p ∇₀w_ip, then v += Δt f/m and u += Δt v (symplectic Euler, the
 //! leapfrog). Rotation and finite stretch are exact; extreme distortion and plastic flow are out of range.
 
+mod borrow;
 mod boundary;
 mod contact;
 mod cut;
@@ -41,6 +42,8 @@ struct State {
     fields: Fields,
     /// Mass of each field [kg/m].
     mass: Vec<f64>,
+    /// Mass that light fields hold for others: (field, lender, mass [kg/m]).
+    borrowed: Vec<(u32, u32, f64)>,
     /// Displacement u [m].
     displacement: FieldVectors,
     /// Velocity v at half steps [m/s].
@@ -133,6 +136,7 @@ impl Total {
         let state = State {
             fields: Fields::new(grid.len()),
             mass: vec![0.0; grid.len()],
+            borrowed: Vec::new(),
             displacement: zeros(),
             velocity: zeros(),
             cut: CutParticles::new(particles.len()),
@@ -162,6 +166,7 @@ impl Total {
             steps_since_check: 0,
         };
         solver.cut_all();
+        solver.borrow_mass();
         solver.lay_probes(cracks);
         solver.set_initial_velocities();
         solver.refresh(cracks)?;

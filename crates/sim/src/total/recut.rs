@@ -31,7 +31,7 @@ impl Total {
     /// # Errors
     /// When a load or support selects nothing.
     pub(super) fn refresh(&mut self, cracks: &[Crack]) -> Result<(), SimulationError> {
-        self.resize_fields();
+        self.refresh_masses();
         self.loads = self.point_forces()?;
         self.constraints = self.constraints_of_supports()?;
         self.surface = self.surface_nodes();
@@ -39,6 +39,7 @@ impl Total {
         Ok(())
     }
 
+    /// Makes room for new fields.
     fn resize_fields(&mut self) {
         let fields = self.state.fields.len();
         self.state.mass.resize(fields, 0.0);
@@ -46,7 +47,12 @@ impl Total {
         for values in vectors.into_iter().flatten() {
             values.resize(fields, 0.0);
         }
-        self.inverse_mass = self.state.mass.iter().map(|&m| if m > 0.0 { 1.0 / m } else { 0.0 }).collect();
+    }
+
+    fn refresh_masses(&mut self) {
+        self.resize_fields();
+        self.inverse_mass.clear();
+        self.inverse_mass.extend(self.state.mass.iter().map(|&m| if m > 0.0 { 1.0 / m } else { 0.0 }));
     }
 
     /// Takes up new crack points and new kinds of ends.
@@ -122,8 +128,10 @@ impl Total {
             self.note_changes(p, &entries, &mut changes);
             stencils.push((p, entries));
         }
+        self.give_back();
         self.hand_over(&changes);
         self.state.cut.replace(stencils);
+        self.borrow_mass();
     }
 
     /// Notes per node how the weights of a particle move between its fields: (node, (field, change of weight), mass).
