@@ -83,6 +83,27 @@ pub(crate) fn slot(end: End) -> usize {
     }
 }
 
+/// Length of the chord that gives the direction of a crack at its tip, in cells: as long as the smallest radius of an integral.
+pub(crate) const DIRECTION_LENGTH: f64 = 2.0;
+
+/// The place on a polyline at the arc length `over` [m] from one end, or its other end when it is shorter.
+pub(crate) fn chord_start(points: &[Point], end: End, over: f64) -> Point {
+    let n = points.len();
+    let at = |k: usize| match end {
+        End::Start => points[k],
+        End::End => points[n - 1 - k],
+    };
+    let mut left = over;
+    for k in 1..n {
+        let length = (at(k) - at(k - 1)).norm();
+        if left <= length {
+            return at(k - 1) + (at(k) - at(k - 1)) * (left / length);
+        }
+        left -= length;
+    }
+    at(n - 1)
+}
+
 /// Both ends of a crack.
 pub(crate) const ENDS: [End; 2] = [End::Start, End::End];
 
@@ -126,13 +147,13 @@ impl Crack {
         }
     }
 
-    /// Unit vector along the crack at rest, pointing ahead of the end.
-    pub(crate) fn ahead(&self, end: End) -> Vector {
-        let n = self.points.len();
-        match end {
-            End::Start => (self.points[0] - self.points[1]).normalize(),
-            End::End => (self.points[n - 1] - self.points[n - 2]).normalize(),
-        }
+    /// Unit vector along the crack at rest, pointing ahead of the end: along the chord from the place `over` [m] behind the tip (or the other end).
+    ///
+    /// Measured and grown over the same chord, a kink shorter than what the integrals resolve counts only as far as it has come. Taken along the last
+    /// increment alone, the same K_II would turn the crack again at every increment until it has run in a circle.
+    pub(crate) fn ahead(&self, end: End, over: f64) -> Vector {
+        let tip = self.tip_position(end);
+        (tip - chord_start(&self.points, end, over)).normalize()
     }
 
     /// Adds a point at an end.

@@ -55,7 +55,7 @@ fn direction(crack: &Crack, end: End, measured: &Measured, scene: &Scene) -> Opt
     if to.norm() <= 1e-9 * scene.cell_size {
         return None;
     }
-    let ahead = crack.ahead(end);
+    let ahead = crack.ahead(end, crate::crack::DIRECTION_LENGTH * scene.cell_size);
     let angle = ahead.perp(&to).atan2(ahead.dot(&to));
     let split = crate::StressIntensity { mode_1: measured.mode_1.max(0.0), mode_2: measured.mode_2 };
     // The amplitude of J, the ratio of the modes.
@@ -95,7 +95,7 @@ pub(crate) fn advance(cracks: &[Crack], index: usize, end: End, measured: &Measu
         return Some(Advance { points, end: CrackEnd::Tip, state });
     }
     let (angle, _) = direction(crack, end, measured, scene)?;
-    let ahead = crack.ahead(end);
+    let ahead = crack.ahead(end, crate::crack::DIRECTION_LENGTH * scene.cell_size);
     let (sine, cosine) = angle.sin_cos();
     let toward = Vector::new(cosine * ahead.x - sine * ahead.y, sine * ahead.x + cosine * ahead.y);
     if let Some(hit) = first_obstacle(cracks, index, end, region, from, from + toward * (step + LAST_LIGAMENT * h)) {

@@ -102,7 +102,7 @@ impl Gauge<'_> {
             End::Start => line.points.clone(),
             End::End => line.points.iter().rev().copied().collect(),
         };
-        let ahead = line.ahead(end);
+        let ahead = line.ahead(end, crate::crack::DIRECTION_LENGTH * self.scene.cell_size);
         for w in points.windows(3) {
             let (a, b) = (w[1] - w[0], w[2] - w[1]);
             // Both the turn at one point and what small turns have added up to since the tip.

@@ -3,7 +3,7 @@
 use super::cut::Probe;
 use super::{FieldVectors, Total, left_of_tip};
 use crate::SimulationError;
-use crate::crack::{Crack, slot};
+use crate::crack::{Crack, DIRECTION_LENGTH, chord_start, slot};
 use crate::crossing::Side;
 use crate::solver::{Observed, QuadraturePoint, TipZone};
 use fissure_scene::{CrackEnd, CrackFrame, End, Matrix, OutlineFrame, ParticleFrame, Point, Vector, orientation};
@@ -44,20 +44,16 @@ impl Observed for Total {
 
     fn tip_now(&self, cracks: &[Crack], crack: usize, end: End) -> (Point, Vector) {
         let faces = &self.state.faces[crack];
-        let n = faces[0].len();
-        let (tip, behind) = match end {
-            End::Start => (0, 1),
-            End::End => (n - 1, n - 2),
-        };
-        let place = |k: usize| {
-            let mean =
-                (faces[0][k].value(&self.state.displacement) + faces[1][k].value(&self.state.displacement)) * 0.5;
-            faces[0][k].rest + mean
-        };
-        let (now, before) = (place(tip), place(behind));
-        let ahead = now - before;
+        let now: Vec<Point> = faces[0]
+            .iter()
+            .zip(&faces[1])
+            .map(|(above, below)| nalgebra::center(&self.moved(above), &self.moved(below)))
+            .collect();
+        let over = DIRECTION_LENGTH * self.grid.cell_size;
+        let tip = if end == End::Start { now[0] } else { now[now.len() - 1] };
+        let ahead = tip - chord_start(&now, end, over);
         let length = ahead.norm();
-        (now, if length > 0.0 { ahead / length } else { cracks[crack].ahead(end) })
+        (tip, if length > 0.0 { ahead / length } else { cracks[crack].ahead(end, over) })
     }
 }
 
@@ -73,7 +69,7 @@ impl Total {
     fn zone(&self, cracks: &[Crack], crack: usize, end: End, radius: f64, half_step: f64) -> TipZone {
         let line = &cracks[crack];
         let tip = line.tip_position(end);
-        let ahead = line.ahead(end);
+        let ahead = line.ahead(end, DIRECTION_LENGTH * self.grid.cell_size);
         let s = self.particles.spacing;
         let center = (tip - self.particles.anchor) / s;
         let reach = (radius / s).ceil() as i32 + 1;
@@ -127,7 +123,7 @@ impl Total {
     /// The face of the crack that a place sees, as a side of the tip frame: that of the nearest segment behind the tip, of the tip's own line ahead.
     fn side_of(&self, line: &Crack, end: End, place: Point) -> Side {
         let tip = line.tip_position(end);
-        let ahead = line.ahead(end);
+        let ahead = line.ahead(end, DIRECTION_LENGTH * self.grid.cell_size);
         let mut sign = ahead.perp(&(place - tip));
         if (place - tip).dot(&ahead) < 0.0 {
             let n = line.points.len();

@@ -1,7 +1,7 @@
 //! Looking at the solver: what is around a tip, what a frame holds.
 
 use super::Updated;
-use crate::crack::{Crack, slot};
+use crate::crack::{Crack, DIRECTION_LENGTH, chord_start, slot};
 use crate::crossing::Side;
 use crate::solver::{Observed, QuadraturePoint, TipZone};
 use fissure_scene::{CrackEnd, CrackFrame, End, Matrix, OutlineFrame, ParticleFrame, Point, Vector, orientation};
@@ -38,14 +38,11 @@ impl Observed for Updated {
 
     fn tip_now(&self, cracks: &[Crack], crack: usize, end: End) -> (Point, Vector) {
         let points = &self.state.cracks[crack].position;
-        let n = points.len();
-        let (now, behind) = match end {
-            End::Start => (points[0], points[1]),
-            End::End => (points[n - 1], points[n - 2]),
-        };
-        let ahead = now - behind;
+        let over = DIRECTION_LENGTH * self.scene.cell_size;
+        let tip = if end == End::Start { points[0] } else { points[points.len() - 1] };
+        let ahead = tip - chord_start(points, end, over);
         let length = ahead.norm();
-        (now, if length > 0.0 { ahead / length } else { cracks[crack].ahead(end) })
+        (tip, if length > 0.0 { ahead / length } else { cracks[crack].ahead(end, over) })
     }
 }
 
