@@ -77,6 +77,8 @@ struct Line {
     kinds: Vec<SegmentKind>,
     /// Segment of the crack that each prepared one is, or carries on.
     of: Vec<u32>,
+    /// Whether it has a continuation beyond a junction.
+    has_junction: bool,
 }
 
 /// What a segment of a prepared line stands for.
@@ -97,6 +99,7 @@ pub(crate) struct Division {
     cell_size: f64,
     particle_spacing: f64,
     buckets: HashMap<(i64, i64), Vec<(u32, u32)>>,
+    has_junctions: bool,
 }
 
 impl Division {
@@ -121,7 +124,8 @@ impl Division {
                 }
             }
         }
-        Self { lines, cell_size, particle_spacing, buckets }
+        let has_junctions = lines.iter().any(|l| l.has_junction);
+        Self { lines, cell_size, particle_spacing, buckets, has_junctions }
     }
 
     fn bucket(&self, point: Point) -> &[(u32, u32)] {
@@ -159,7 +163,7 @@ impl Division {
         for &(line, segment) in self.bucket(particle) {
             let line = &self.lines[line as usize];
             let (a, b) = line.segments[segment as usize];
-            if crossing(particle, node, a, b).is_some() {
+            if !apart(particle, node, a, b) && crossing(particle, node, a, b).is_some() {
                 visit(line.crack, line.of[segment as usize] as usize);
             }
         }
@@ -183,13 +187,14 @@ impl Division {
         let bucket = self.bucket(particle);
         // Continuations beyond a junction need to know what else is crossed, so they come in a second round.
         let mut crossed_whole: Vec<u32> = Vec::new();
-        for round in 0..2 {
+        let rounds = if self.has_junctions { 2 } else { 1 };
+        for round in 0..rounds {
             let mut rest = bucket;
             while let Some(&(line_index, _)) = rest.first() {
                 let (segments, others) = rest.split_at(rest.iter().take_while(|s| s.0 == line_index).count());
                 rest = others;
                 let line = &self.lines[line_index as usize];
-                if (round == 1) != line.has_junction() {
+                if (round == 1) != line.has_junction {
                     continue;
                 }
                 let Some(cut) = divide(line, segments, particle, node, self.cell_size, domain, &crossed_whole) else {
@@ -219,12 +224,6 @@ fn split(shares: Vec<Share>, crack: u32, cut: Cut) -> Vec<Share> {
         result.push(far);
     }
     result
-}
-
-impl Line {
-    fn has_junction(&self) -> bool {
-        self.kinds.iter().any(|k| matches!(k, SegmentKind::BeyondJunction(_)))
-    }
 }
 
 fn prepare(line: &CrackLine, tip_division: TipDivision, cell_size: f64) -> Line {
@@ -260,7 +259,8 @@ fn prepare(line: &CrackLine, tip_division: TipDivision, cell_size: f64) -> Line 
         segments.push((point, p[0]));
         of.push(0);
     }
-    Line { crack: line.crack, segments, tips, kinds, of }
+    let has_junction = kinds.iter().any(|k| matches!(k, SegmentKind::BeyondJunction(_)));
+    Line { crack: line.crack, segments, tips, kinds, of, has_junction }
 }
 
 /// The crack across which two fields face each other, and the side of the first; none when they differ by more than one crack.
@@ -286,6 +286,15 @@ struct Cut {
     gradient: Vector,
 }
 
+/// Whether the boxes around the segments `p`–`q` and `a`–`b` share no point; most segments near a particle are nowhere near the pair.
+#[inline]
+fn apart(p: Point, q: Point, a: Point, b: Point) -> bool {
+    p.x.max(q.x) < a.x.min(b.x)
+        || p.x.min(q.x) > a.x.max(b.x)
+        || p.y.max(q.y) < a.y.min(b.y)
+        || p.y.min(q.y) > a.y.max(b.y)
+}
+
 /// How `line` divides a pair; none when the pair is whole. `crossed` are the other cracks that the pair crosses.
 fn divide(
     line: &Line,
@@ -306,6 +315,9 @@ fn divide(
             continue;
         }
         let (a, b) = line.segments[segment as usize];
+        if apart(particle, node, a, b) {
+            continue;
+        }
         if let Some(found) = crossing(particle, node, a, b) {
             net.add(found);
             crosses_real |= kind != SegmentKind::AheadOfTip;

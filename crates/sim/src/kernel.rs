@@ -32,7 +32,7 @@ pub(crate) struct AxisStencil {
 /// Weights along one axis for a particle at `x` [cells]; `half_size` is half the particle's domain l_p [cells], at most 1/2, used by GIMP only.
 ///
 /// Where a kernel has a kink (bilinear: exactly on a node) the derivative is that of the higher cell.
-#[inline]
+#[inline(always)]
 pub(crate) fn axis_stencil(kernel: Kernel, half_size: f64, x: f64) -> AxisStencil {
     match kernel {
         Kernel::Bilinear => bilinear(x),
@@ -42,20 +42,29 @@ pub(crate) fn axis_stencil(kernel: Kernel, half_size: f64, x: f64) -> AxisStenci
     }
 }
 
-#[inline]
+/// ⌊x⌋ as a number and as an index. Without a call into the mathematical library, which baseline x86-64 needs for `f64::floor`.
+#[inline(always)]
+fn floor(x: f64) -> (f64, i32) {
+    let truncated = x as i32;
+    let index = truncated - i32::from(f64::from(truncated) > x);
+    (f64::from(index), index)
+}
+
+#[inline(always)]
 fn bilinear(x: f64) -> AxisStencil {
-    let base = x.floor();
+    let (base, first) = floor(x);
     let f = x - base;
-    AxisStencil { first: base as i32, weight: [1.0 - f, f, 0.0, 0.0], gradient: [-1.0, 1.0, 0.0, 0.0] }
+    AxisStencil { first, weight: [1.0 - f, f, 0.0, 0.0], gradient: [-1.0, 1.0, 0.0, 0.0] }
 }
 
 /// The hat averaged over the particle's domain [x - l, x + l] (uniform GIMP, Bardenhagen & Kober 2004); l = 0 gives the hat.
-#[inline]
+#[inline(always)]
 fn gimp(half_size: f64, x: f64) -> AxisStencil {
     debug_assert!((0.0..=0.5).contains(&half_size), "a domain wider than a cell reaches more than three nodes");
     let l = half_size;
-    let base = (x + 0.5).floor() - 1.0;
-    let mut stencil = AxisStencil { first: base as i32, weight: [0.0; MAX_WIDTH], gradient: [0.0; MAX_WIDTH] };
+    let (above, first) = floor(x + 0.5);
+    let base = above - 1.0;
+    let mut stencil = AxisStencil { first: first - 1, weight: [0.0; MAX_WIDTH], gradient: [0.0; MAX_WIDTH] };
     for k in 0..3 {
         let offset = x - (base + k as f64);
         let (distance, sign) = (offset.abs(), if offset < 0.0 { -1.0 } else { 1.0 });
@@ -73,27 +82,27 @@ fn gimp(half_size: f64, x: f64) -> AxisStencil {
     stencil
 }
 
-#[inline]
+#[inline(always)]
 fn quadratic(x: f64) -> AxisStencil {
-    let base = (x - 0.5).floor();
+    let (base, first) = floor(x - 0.5);
     let f = x - base; // 1/2 to 3/2
     let (left, middle, right) = (1.5 - f, f - 1.0, f - 0.5);
     AxisStencil {
-        first: base as i32,
+        first,
         weight: [0.5 * left * left, 0.75 - middle * middle, 0.5 * right * right, 0.0],
         gradient: [-left, -2.0 * middle, right, 0.0],
     }
 }
 
-#[inline]
+#[inline(always)]
 fn cubic(x: f64) -> AxisStencil {
-    let base = x.floor();
+    let (base, first) = floor(x);
     let (f, g) = (x - base, 1.0 - (x - base));
     let outer = |t: f64| t * t * t / 6.0;
     let inner = |t: f64| (0.5 * t - 1.0) * t * t + 2.0 / 3.0;
     let inner_slope = |t: f64| (1.5 * t - 2.0) * t;
     AxisStencil {
-        first: base as i32 - 1,
+        first: first - 1,
         weight: [outer(g), inner(f), inner(g), outer(f)],
         gradient: [-0.5 * g * g, inner_slope(f), -inner_slope(g), 0.5 * f * f],
     }
@@ -116,7 +125,7 @@ pub(crate) struct Stencil {
 
 impl Stencil {
     /// The stencil of a particle at `place` [cells from node (0, 0)]; `half_size` as in [`axis_stencil`]; `inverse_cell_size` 1/h [1/m].
-    #[inline]
+    #[inline(always)]
     pub(crate) fn new(kernel: Kernel, half_size: f64, place: [f64; 2], inverse_cell_size: f64) -> Self {
         let x = axis_stencil(kernel, half_size, place[0]);
         let y = axis_stencil(kernel, half_size, place[1]);

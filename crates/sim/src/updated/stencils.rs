@@ -232,7 +232,7 @@ impl Updated {
         (0.5 * self.particles.spacing / self.scene.cell_size).min(0.5)
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn stencil(&self, grid: &Grid, place: Point) -> Stencil {
         let inverse = 1.0 / grid.cell_size;
         let x = (place - grid.origin) * inverse;

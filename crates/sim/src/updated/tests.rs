@@ -1,4 +1,4 @@
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
 
 use super::*;
 use crate::test_scenes::{add_crack, always, free_body, rectangle, set_motion};
@@ -440,6 +440,36 @@ fn the_stable_step_is_stable_and_twice_it_is_not() {
                 assert!(!failed && growth < 1.01, "{kernel:?} at {speed} m/s: energy times {growth}");
             } else if kernel != Kernel::Bilinear {
                 assert!(failed || growth > 10.0, "{kernel:?}: {growth}");
+            }
+        }
+    }
+}
+
+/// Particle-steps per second on one thread, printed: `cargo test --release -p fissure-sim rates -- --ignored --nocapture`.
+#[test]
+#[ignore = "takes time and wants a quiet machine"]
+fn rates() {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    for cracked in [false, true] {
+        for kernel in KERNELS {
+            for transfer in [Transfer::Pic, Transfer::Flip(1.0), Transfer::Apic, Transfer::Xpic] {
+                let mut scene = free_body(rectangle([0.0, 0.0], [2.0, 1.0]), 0.005);
+                scene.solver.kernel = kernel;
+                scene.solver.transfer = transfer;
+                if cracked {
+                    let points: Vec<[f64; 2]> = (0..=200).map(|k| [0.005 * f64::from(k), 0.503]).collect();
+                    add_crack(&mut scene, &points);
+                }
+                set_motion(&mut scene, Selection::All, [0.01, 0.0], 0.01, [1.0, 0.5]);
+                let mut run = Run::new(&scene);
+                let time_step = 0.5 * run.solver.stable_time_step();
+                pool.install(|| {
+                    run.steps(2, time_step);
+                    let start = std::time::Instant::now();
+                    run.steps(12, time_step);
+                    let rate = 12.0 * run.solver.particles.len() as f64 / start.elapsed().as_secs_f64();
+                    println!("crack {cracked}, {kernel:?}, {transfer:?}: {:.1} M/s", 1e-6 * rate);
+                });
             }
         }
     }

@@ -76,6 +76,34 @@ fn affine_weights<const W: usize>(arm: &[f64; W], weight: &[f64]) -> [f64; W] {
     std::array::from_fn(|a| weight[a] * arm[a] / d)
 }
 
+/// The first `W` of all weights.
+#[inline(always)]
+fn first<const W: usize>(all: &[f64; kernel::MAX_WIDTH]) -> [f64; W] {
+    std::array::from_fn(|a| all[a])
+}
+
+/// Adds `value` of 0 to W − 1 to the places from `at` on. Fixed sizes keep the loop free of checks.
+#[inline(always)]
+fn add<const W: usize>(values: &mut [f64], at: usize, value: impl Fn(usize) -> f64) {
+    if let Some(values) = values[at..].first_chunk_mut::<W>() {
+        for a in 0..W {
+            values[a] += value(a);
+        }
+    }
+}
+
+/// Σ `values` times `weights` over the places from `at` on.
+#[inline(always)]
+fn along<const W: usize>(values: &[f64], at: usize, weights: &[f64; W]) -> f64 {
+    let mut sum = 0.0;
+    if let Some(values) = values[at..].first_chunk::<W>() {
+        for a in 0..W {
+            sum += values[a] * weights[a];
+        }
+    }
+    sum
+}
+
 #[inline]
 fn arms<const W: usize>(first: i32, origin: f64, cell_size: f64, place: f64) -> [f64; W] {
     std::array::from_fn(|a| (origin - place) + f64::from(first + a as i32) * cell_size)
@@ -143,20 +171,23 @@ impl Updated {
                     force: [fx, fy],
                 })
                 .collect();
+            let run = |band: &mut Band<'_>| match self.state.affine.is_empty() {
+                true => self.band_to_grid::<W, false>(&grid, band),
+                false => self.band_to_grid::<W, true>(&grid, band),
+            };
             if self.is_parallel() {
-                bands.par_iter_mut().for_each(|band| self.band_to_grid::<W>(&grid, band));
+                bands.par_iter_mut().for_each(run);
             } else {
-                bands.iter_mut().for_each(|band| self.band_to_grid::<W>(&grid, band));
+                bands.iter_mut().for_each(run);
             }
         }
     }
 
-    fn band_to_grid<const W: usize>(&self, grid: &Grid, band: &mut Band<'_>) {
+    fn band_to_grid<const W: usize, const AFFINE: bool>(&self, grid: &Grid, band: &mut Band<'_>) {
         let rows = &self.order.first;
         let (from, to) = (band.first_row.min(grid.rows), (band.first_row + BAND).min(grid.rows));
         let particles = &self.order.particles[rows[from] as usize..rows[to] as usize];
         let h = grid.cell_size;
-        let is_affine = !self.state.affine.is_empty();
         for &p in particles {
             let p = p as usize;
             if self.cut.entries_of(p).is_some() {
@@ -166,40 +197,34 @@ impl Updated {
             let stencil = self.stencil(grid, point.position);
             let m = self.particles.mass[p];
             let tension = self.stress_times_volume(p, point);
-            let x: [f64; W] = std::array::from_fn(|a| stencil.weight[0][a]);
-            let dx: [f64; W] = std::array::from_fn(|a| stencil.gradient[0][a]);
-            let c = if is_affine { self.state.affine[p] } else { Matrix::zeros() };
-            let arm_x: [f64; W] = arms(stencil.first[0], grid.origin.x, h, point.position.x);
+            let x: [f64; W] = first(&stencil.weight[0]);
+            let dx: [f64; W] = first(&stencil.gradient[0]);
+            let mut arm_x = [0.0; W];
+            let mut affine = Matrix::zeros();
+            if AFFINE {
+                arm_x = arms(stencil.first[0], grid.origin.x, h, point.position.x);
+                affine = self.state.affine[p];
+            }
             let arm_y: [f64; W] = arms(stencil.first[1], grid.origin.y, h, point.position.y);
-            let column = stencil.first[0] as usize;
+            let mut at = (stencil.first[1] as usize - band.first_row) * grid.columns + stencil.first[0] as usize;
             for b in 0..W {
-                let at = (stencil.first[1] as usize + b - band.first_row) * grid.columns + column;
                 let (wy, gy) = (stencil.weight[1][b], stencil.gradient[1][b]);
                 let mw = m * wy;
-                let mass = &mut band.mass[at..at + W];
-                for a in 0..W {
-                    mass[a] += mw * x[a];
-                }
+                add::<W>(band.mass, at, |a| mw * x[a]);
                 for axis in 0..2 {
                     let v = point.velocity[axis];
-                    let momentum = &mut band.momentum[axis][at..at + W];
-                    if is_affine {
-                        let v = v + c[(axis, 1)] * arm_y[b];
-                        for a in 0..W {
-                            momentum[a] += mw * x[a] * (v + c[(axis, 0)] * arm_x[a]);
-                        }
+                    if AFFINE {
+                        let v = v + affine[(axis, 1)] * arm_y[b];
+                        add::<W>(band.momentum[axis], at, |a| mw * x[a] * (v + affine[(axis, 0)] * arm_x[a]));
                     } else {
-                        for a in 0..W {
-                            momentum[a] += mw * v * x[a];
-                        }
+                        let mv = mw * v;
+                        add::<W>(band.momentum[axis], at, |a| mv * x[a]);
                     }
                     // f_i −= V_p0 τ_p ∇w_ip.
                     let (t1, t2) = (tension[(axis, 0)] * wy, tension[(axis, 1)] * gy);
-                    let force = &mut band.force[axis][at..at + W];
-                    for a in 0..W {
-                        force[a] -= t1 * dx[a] + t2 * x[a];
-                    }
+                    add::<W>(band.force[axis], at, |a: usize| -(t1 * dx[a] + t2 * x[a]));
                 }
+                at += grid.columns;
             }
         }
     }
@@ -395,7 +420,7 @@ impl Updated {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn gather<const W: usize>(
         &self,
         grid: &Grid,
@@ -413,22 +438,14 @@ impl Updated {
             return self.gather_entries::<W>(entries, &stencil, wanted, [arm_x, arm_y]);
         }
         let mut g = Gathered::default();
-        let x: [f64; W] = std::array::from_fn(|a| stencil.weight[0][a]);
-        let dx: [f64; W] = std::array::from_fn(|a| stencil.gradient[0][a]);
+        let x: [f64; W] = first(&stencil.weight[0]);
+        let dx: [f64; W] = first(&stencil.gradient[0]);
         let (ax, ay) = if wanted.affine {
             (affine_weights(&arm_x, &stencil.weight[0]), affine_weights(&arm_y, &stencil.weight[1]))
         } else {
             ([0.0; W], [0.0; W])
         };
         let column = stencil.first[0] as usize;
-        let along = |values: &[f64], at: usize, weights: &[f64; W]| -> f64 {
-            let values = &values[at..at + W];
-            let mut sum = 0.0;
-            for a in 0..W {
-                sum += values[a] * weights[a];
-            }
-            sum
-        };
         for b in 0..W {
             let at = (stencil.first[1] as usize + b) * grid.columns + column;
             let (wy, gy) = (stencil.weight[1][b], stencil.gradient[1][b]);
