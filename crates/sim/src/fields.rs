@@ -56,10 +56,4 @@ impl Fields {
     pub(crate) fn divided_nodes(&self) -> impl Iterator<Item = (usize, &[(CrossedSet, u32)])> {
         self.of_node.iter().map(|(&node, fields)| (node as usize, fields.as_slice()))
     }
-
-    /// Forgets all further fields.
-    pub(crate) fn clear(&mut self) {
-        self.of_node.clear();
-        self.node_of.clear();
-    }
 }

@@ -1,6 +1,6 @@
 //! Mass for fields that are too light for their stiffness.
 //!
-//! Behind a tip a far field may consist of small shares b of a few particles. Its mass goes with b, but its stiffness also with w²|∇b|², which does not
+//! Around a tip a field may consist of small shares b of a few particles. Its mass goes with b, but its stiffness also with w²|∇b|², which does not
 //! vanish with b: the field would be stiffer for its mass than any other place of the lattice, and the time step would have to follow. Such
 //! a field borrows mass from the field of its own node with the most mass. The node's mass and momentum stay what they are; only how it is
 //! lumped between two fields a fraction of a cell apart changes, and statics not at all.
@@ -26,8 +26,8 @@ impl Total {
         if self.state.fields.len() == self.grid.len() {
             return;
         }
-        let first = self.grid.len();
-        let mut stiffness = vec![0.0; self.state.fields.len() - first];
+        // Of base fields only the part from particles on the general path; the rest comes with its own mass.
+        let mut stiffness = vec![0.0; self.state.fields.len()];
         let mut speed_squared = 0.0_f64;
         for e in &self.elastic {
             speed_squared = speed_squared.max(e.dilatational_wave_speed().powi(2));
@@ -35,23 +35,23 @@ impl Total {
         self.state.cut.for_each(|particle, entries| {
             let e = &self.elastic[self.particles.material[particle] as usize];
             let modulus = (e.lambda + 2.0 * e.mu) * self.particles.volume[particle];
-            for entry in entries.iter().filter(|x| x.field as usize >= first) {
+            for entry in entries {
                 let g = entry.gradient;
-                stiffness[entry.field as usize - first] += modulus * (g[0] * g[0] + g[1] * g[1]);
+                stiffness[entry.field as usize] += modulus * (g[0] * g[0] + g[1] * g[1]);
             }
         });
         let most = LARGEST_RATIO * speed_squared / (self.grid.cell_size * self.grid.cell_size);
         let mut loans = Vec::new();
         for (node, further) in self.state.fields.divided_nodes() {
-            let richest = std::iter::once(node as u32)
-                .chain(further.iter().map(|f| f.1))
-                .max_by(|&a, &b| self.state.mass[a as usize].total_cmp(&self.state.mass[b as usize]).then(b.cmp(&a)));
+            // The node's own field can be the light one: ahead of a tip that runs through the node it holds but the shares 1 − b.
+            let fields = || std::iter::once(node as u32).chain(further.iter().map(|f| f.1));
+            let mass = |field: u32| self.state.mass[field as usize];
+            let richest = fields().max_by(|&a, &b| mass(a).total_cmp(&mass(b)).then(b.cmp(&a)));
             let Some(lender) = richest else { continue };
-            let mut left = (1.0 - LENDER_KEEPS) * self.state.mass[lender as usize];
-            for &(_, field) in further {
-                let mass = self.state.mass[field as usize];
-                let missing = (stiffness[field as usize - first] / most - mass).min(left);
-                if field != lender && mass > 0.0 && missing > 0.0 {
+            let mut left = (1.0 - LENDER_KEEPS) * mass(lender);
+            for field in fields() {
+                let missing = (stiffness[field as usize] / most - mass(field)).min(left);
+                if field != lender && mass(field) > 0.0 && missing > 0.0 {
                     left -= missing;
                     loans.push((field, lender, missing));
                 }
