@@ -75,6 +75,18 @@ impl GuideWalk {
     }
 }
 
+/// A polyline with no segment longer than `longest` [m]; its own points stay. The faces of a crack are known at its points only.
+fn subdivided(points: &[Point], longest: f64) -> Vec<Point> {
+    let mut result = vec![points[0]];
+    for w in points.windows(2) {
+        // A segment of just the length asked for is not split for its last bit.
+        let pieces = ((w[1] - w[0]).norm() / longest - 1e-9).ceil().max(1.0) as usize;
+        result.extend((1..pieces).map(|k| w[0] + (w[1] - w[0]) * (k as f64 / pieces as f64)));
+        result.push(w[1]);
+    }
+    result
+}
+
 /// Position in a pair [start, end].
 pub(crate) fn slot(end: End) -> usize {
     match end {
@@ -133,7 +145,7 @@ impl Crack {
         };
         Self {
             body: crack.body as u32,
-            points: crack.points.clone(),
+            points: subdivided(&crack.points, 0.5 * scene.cell_size),
             ends,
             tips: [tip(End::Start, crack.start_live), tip(End::End, crack.end_live)],
         }

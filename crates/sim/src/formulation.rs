@@ -7,7 +7,7 @@ use crate::particles::Particles;
 use crate::solver::Solver;
 use crate::total::Total;
 use crate::updated::Updated;
-use fissure_scene::{Formulation, LoadKind, Scene, bounds};
+use fissure_scene::{Formulation, Kernel, LoadKind, Scene, bounds, updated_kernel};
 
 /// A formulation and the reason for it.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,6 +37,20 @@ pub(crate) fn choose(scene: &Scene, elastic: &[Elastic]) -> Choice {
         );
     }
     chosen(Formulation::Total, format!("every material is elastic and strains of about {strain:.1e} are expected"))
+}
+
+/// The scene with the kernel its formulation needs: a bilinear one, the choice where particles never move through the grid, gives way to a smooth one
+/// where the scene left the formulation open and it turned out to be the updated one.
+pub(crate) fn settle(scene: &Scene, choice: &Choice) -> Scene {
+    let mut scene = scene.clone();
+    let solver = &mut scene.solver;
+    if solver.formulation == Formulation::Auto
+        && choice.formulation == Formulation::Updated
+        && solver.kernel == Kernel::Bilinear
+    {
+        solver.kernel = updated_kernel();
+    }
+    scene
 }
 
 /// Strain that loads and impacts will cause, roughly: traction over modulus, speed over wave speed.

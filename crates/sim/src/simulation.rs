@@ -113,7 +113,9 @@ impl Simulation {
         let cracks = Crack::of_scene(scene);
         let particles = Particles::fill(scene)?;
         let elastic: Vec<Elastic> = scene.materials.iter().map(|m| Elastic::new(m, scene.plane)).collect();
-        let Choice { formulation, .. } = formulation::choose(scene, &elastic);
+        let choice = formulation::choose(scene, &elastic);
+        let scene = &formulation::settle(scene, &choice);
+        let Choice { formulation, .. } = choice;
         let solver = formulation::build(formulation, scene, particles.clone(), &cracks)?;
         let mut simulation = Self {
             scene: scene.clone(),
@@ -189,7 +191,7 @@ impl Simulation {
         let mut fastest = (0.0, fissure_scene::Point::origin());
         for (v, x) in particles.velocity.iter().zip(&particles.position) {
             // A NaN counts as fastest of all.
-            if !(v.norm() <= fastest.0) {
+            if v.norm().total_cmp(&fastest.0).is_gt() {
                 fastest = (v.norm(), *x);
             }
         }
@@ -477,6 +479,7 @@ impl Simulation {
         }
         let particles = Particles::fill(scene)?;
         let elastic: Vec<Elastic> = scene.materials.iter().map(|m| Elastic::new(m, scene.plane)).collect();
+        let scene = &formulation::settle(scene, &formulation::choose(scene, &elastic));
         let cracks = &saved.state.cracks;
         let solver = formulation::restore(saved.formulation, scene, particles.clone(), cracks, &saved.solver)?;
         Ok(Self {

@@ -25,6 +25,15 @@ struct Transfer {
     displacement_in: Vector,
 }
 
+/// How the weight of one particle at one node moves between the fields of the node.
+#[derive(Debug, Clone)]
+struct Change {
+    /// (field, change of weight); the changes add up to zero.
+    moved: Vec<(u32, f64)>,
+    /// Mass of the particle [kg/m].
+    mass: f64,
+}
+
 impl Total {
     /// Everything that is made from the state, made anew.
     ///
@@ -122,7 +131,7 @@ impl Total {
         affected.sort_unstable();
         affected.dedup();
         let mut stencils = Vec::with_capacity(affected.len());
-        let mut changes: Vec<(u32, Vec<(u32, f64)>, f64)> = Vec::new();
+        let mut changes: Vec<Change> = Vec::new();
         for p in affected {
             let entries = self.make_entries(p);
             self.note_changes(p, &entries, &mut changes);
@@ -134,8 +143,8 @@ impl Total {
         self.borrow_mass();
     }
 
-    /// Notes per node how the weights of a particle move between its fields: (node, (field, change of weight), mass).
-    fn note_changes(&self, particle: usize, new: &[Entry], changes: &mut Vec<(u32, Vec<(u32, f64)>, f64)>) {
+    /// Notes per node how the weights of a particle move between its fields.
+    fn note_changes(&self, particle: usize, new: &[Entry], changes: &mut Vec<Change>) {
         let mut weights: Vec<(u32, u32, f64)> = Vec::with_capacity(16);
         let mut add = |field: u32, w: f64| {
             let node = self.state.fields.node(field as usize) as u32;
@@ -150,18 +159,18 @@ impl Total {
         for of_node in weights.chunk_by(|a, b| a.0 == b.0) {
             let moved: Vec<(u32, f64)> = of_node.iter().filter(|x| x.2 != 0.0).map(|x| (x.1, x.2)).collect();
             if !moved.is_empty() {
-                changes.push((of_node[0].0, moved, self.particles.mass[particle]));
+                changes.push(Change { moved, mass: self.particles.mass[particle] });
             }
         }
     }
 
-    fn hand_over(&mut self, changes: &[(u32, Vec<(u32, f64)>, f64)]) {
+    fn hand_over(&mut self, changes: &[Change]) {
         let fields = self.state.fields.len();
         self.resize_fields();
         let (u, v) = (&self.state.displacement, &self.state.velocity);
-        let mut transfers = vec![Transfer::default(); 0];
+        let mut transfers: Vec<Transfer> = Vec::new();
         let mut index = std::collections::BTreeMap::<u32, usize>::new();
-        for (_, moved, mass) in changes {
+        for Change { moved, mass } in changes {
             let given: f64 = moved.iter().filter(|m| m.1 < 0.0).map(|m| -m.1).sum();
             if given <= 0.0 {
                 continue;
