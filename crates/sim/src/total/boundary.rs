@@ -113,9 +113,8 @@ impl Total {
         }
     }
 
-    /// Adds the loads for the time `time` to the forces and counts their work over a step.
-    pub(super) fn apply_loads(&mut self, time: f64, time_step: f64) {
-        let mut power = 0.0;
+    /// Adds the loads for the time `time` to the forces.
+    pub(super) fn apply_loads(&mut self, time: f64) {
         for (load, forces) in self.scene.loads.iter().zip(&self.loads) {
             let factor = load.curve.value(time);
             if factor == 0.0 {
@@ -123,24 +122,29 @@ impl Total {
             }
             for point in forces {
                 let f = point.force * factor;
-                power += f.dot(&point.probe.value(&self.state.velocity));
                 for &(field, w) in &point.probe.entries {
                     self.force[0][field as usize] += f.x * w;
                     self.force[1][field as usize] += f.y * w;
                 }
             }
         }
-        self.state.external_work += power * time_step;
     }
 
-    /// Counts the work of gravity over a step.
-    pub(super) fn count_gravity_work(&mut self, time_step: f64) {
-        let g = self.scene.gravity;
-        if g == Vector::zeros() {
-            return;
+    /// Counts the work of loads and gravity over a step, by the displacements it will make: v Δt with the velocities of the middle of the step.
+    pub(super) fn count_work(&mut self, time: f64, time_step: f64) {
+        let mut power = 0.0;
+        for (load, forces) in self.scene.loads.iter().zip(&self.loads) {
+            let factor = load.curve.value(time);
+            if factor != 0.0 {
+                let v = &self.state.velocity;
+                power += factor * forces.iter().map(|p| p.force.dot(&p.probe.value(v))).sum::<f64>();
+            }
         }
-        let v = &self.state.velocity;
-        let power: f64 = self.state.mass.iter().enumerate().map(|(d, m)| m * (g.x * v[0][d] + g.y * v[1][d])).sum();
+        let g = self.scene.gravity;
+        if g != Vector::zeros() {
+            let v = &self.state.velocity;
+            power += self.state.mass.iter().enumerate().map(|(d, m)| m * (g.x * v[0][d] + g.y * v[1][d])).sum::<f64>();
+        }
         self.state.external_work += power * time_step;
     }
 

@@ -344,7 +344,7 @@ impl Solver for Total {
         let mut force = std::mem::take(&mut self.force);
         self.internal_forces(&self.state.displacement, &mut force);
         self.force = force;
-        self.apply_loads(time + 0.5 * time_step, time_step);
+        self.apply_loads(time + 0.5 * time_step);
         let kick = if self.state.in_step { 0.5 * time_step } else { time_step };
         self.state.in_step = false;
         let decay = (-self.settings.damping * kick).exp();
@@ -361,7 +361,6 @@ impl Solver for Total {
                 acceleration[d] = before;
             }
         }
-        self.count_gravity_work(time_step);
         if self.settings.crack_contact && !self.contacts.is_empty() {
             self.resolve_crack_contact();
         }
@@ -375,6 +374,7 @@ impl Solver for Total {
                 acceleration[d] = (velocity[d] - acceleration[d]) / kick;
             }
         }
+        self.count_work(time + 0.5 * time_step, time_step);
         let moment = look::Moment { solver: self, half_step: 0.5 * time_step };
         observe(&moment);
         for axis in 0..2 {
