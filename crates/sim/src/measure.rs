@@ -40,6 +40,7 @@ impl Gauge<'_> {
         let reach = if settings.j_method == JMethod::Contour { radius + 2.0 * h } else { radius };
         let mut zone = solver.tip_zone(cracks, crack, end, reach);
         zone.center_on_crack(h);
+        zone.take_off_mean_velocity();
         let Some(nearest) = zone.points.iter().min_by(|a, b| a.place.norm_squared().total_cmp(&b.place.norm_squared()))
         else {
             return Measured::default();

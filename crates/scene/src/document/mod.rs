@@ -1,4 +1,4 @@
-//! The words of `scene.toml`, exactly as a user writes them. [`mod@crate::load`] turns them into a [`crate::Scene`].
+//! The words of `scene.toml`, exactly as a user writes them. [`crate::load()`] turns them into a [`crate::Scene`].
 //!
 //! Every key is optional unless its documentation says otherwise; unknown keys are refused. The doc comments are the
 //! JSON schema's descriptions.

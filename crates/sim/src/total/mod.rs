@@ -11,6 +11,8 @@ mod cut;
 mod look;
 mod recut;
 mod rows;
+#[cfg(test)]
+mod tests;
 
 use crate::SimulationError;
 use crate::collider::Obstacle;

@@ -1,0 +1,104 @@
+//! Conservation in the total Lagrangian solver, against closed forms.
+#![allow(clippy::unwrap_used)]
+
+use super::Total;
+use crate::crack::Crack;
+use crate::particles::Particles;
+use crate::solver::Solver;
+use crate::test_scenes;
+use fissure_scene::{End, Formulation, Kernel, Scene, Selection, TipDivision, Vector};
+use std::f64::consts::TAU;
+
+/// A square of 20 × 20 cells with an edge crack, its faces free to pass: contact acts at one node of two places, which is no couple-free pair of forces.
+fn cracked_plate() -> Scene {
+    let mut scene = test_scenes::free_body(test_scenes::rectangle([0.0, 0.0], [4.0, 4.0]), 0.1);
+    scene.solver.formulation = Formulation::Total;
+    scene.solver.kernel = Kernel::Bilinear;
+    scene.solver.tip_division = TipDivision::PartlyCut;
+    scene.solver.crack_contact = false;
+    test_scenes::add_crack(&mut scene, &[[0.0, 2.03], [1.5, 2.03]]);
+    scene
+}
+
+fn solver(scene: &Scene) -> (Total, Vec<Crack>) {
+    let cracks = Crack::of_scene(scene);
+    (Total::new(scene, Particles::fill(scene).unwrap(), &cracks).unwrap(), cracks)
+}
+
+/// Linear and angular momentum about the origin, per unit thickness.
+fn momenta(frame: &Total) -> (Vector, f64) {
+    let mut linear = Vector::zeros();
+    let mut angular = 0.0;
+    for d in 0..frame.state.mass.len() {
+        let m = frame.state.mass[d];
+        let u = Vector::new(frame.state.displacement[0][d], frame.state.displacement[1][d]);
+        let v = Vector::new(frame.state.velocity[0][d], frame.state.velocity[1][d]);
+        let x = frame.grid.position(frame.state.fields.node(d)).coords + u;
+        linear += v * m;
+        angular += m * x.perp(&v);
+    }
+    (linear, angular)
+}
+
+/// Truth: without outer forces both momenta stay, to round-off. Position and velocity are half a step apart, which adds x × v the same v × v = 0.
+#[test]
+fn a_spinning_cracked_plate_keeps_its_momenta() {
+    let mut scene = cracked_plate();
+
+    test_scenes::set_motion(&mut scene, Selection::All, [0.7, -0.3], 2.0, [2.0, 2.0]);
+    let (mut total, cracks) = solver(&scene);
+    let time_step = 0.5 * total.stable_time_step();
+    total.step(&cracks, 0.0, time_step, &mut |_| ()).unwrap();
+    let (linear, angular) = momenta(&total);
+    for step in 1..2000 {
+        total.step(&cracks, time_step * f64::from(step), time_step, &mut |_| ()).unwrap();
+    }
+    let (linear_after, angular_after) = momenta(&total);
+    assert!((linear_after - linear).norm() < 1e-11 * linear.norm(), "{linear} {linear_after}");
+    assert!((angular_after / angular - 1.0).abs() < 1e-10, "{angular} {angular_after}");
+}
+
+/// Truth: taking up new crack points moves mass and momentum between the fields of a node, so both sums stay, and kinetic energy cannot rise.
+#[test]
+fn growth_keeps_mass_and_momentum() {
+    let mut scene = cracked_plate();
+
+    test_scenes::set_motion(&mut scene, Selection::All, [0.7, -0.3], 2.0, [2.0, 2.0]);
+    let (mut total, mut cracks) = solver(&scene);
+    let time_step = 0.5 * total.stable_time_step();
+    for step in 0..50 {
+        total.step(&cracks, time_step * f64::from(step), time_step, &mut |_| ()).unwrap();
+    }
+    for k in 0..12 {
+        let mass: f64 = total.state.mass.iter().sum();
+        let (linear, _) = momenta(&total);
+        let kinetic = total.kinetic_energy();
+        let tip = cracks[0].tip_position(End::End);
+        let turn = Vector::new(0.21, if k % 3 == 0 { 0.08 } else { -0.05 }) * scene.cell_size;
+        cracks[0].push(End::End, tip + turn);
+        total.recut(&cracks, &[(0, End::End)]);
+        let (linear_after, _) = momenta(&total);
+        assert!((total.state.mass.iter().sum::<f64>() / mass - 1.0).abs() < 1e-12);
+        assert!((linear_after - linear).norm() < 1e-12 * linear.norm(), "{linear} {linear_after}");
+        assert!(total.kinetic_energy() <= kinetic * (1.0 + 1e-12));
+        total.step(&cracks, 0.0, time_step, &mut |_| ()).unwrap();
+    }
+}
+
+/// Truth: a rigid turn strains nothing. Ten turns by placing the nodes; the stress stays below 1e-10 E.
+#[test]
+fn ten_turns_leave_no_stress() {
+    let scene = cracked_plate();
+    let (mut total, _) = solver(&scene);
+    let young = scene.materials[0].young_modulus;
+    for k in 0..=40 {
+        let (sine, cosine) = (TAU * 10.0 * f64::from(k) / 40.0 + 0.1).sin_cos();
+        for d in 0..total.state.mass.len() {
+            let x = total.grid.position(total.state.fields.node(d));
+            total.state.displacement[0][d] = (cosine - 1.0) * x.x - sine * x.y;
+            total.state.displacement[1][d] = sine * x.x + (cosine - 1.0) * x.y;
+        }
+        let worst = total.particle_frame().cauchy_stress.iter().map(|s| s.norm()).fold(0.0, f64::max);
+        assert!(worst < 1e-10 * young, "{worst}");
+    }
+}
