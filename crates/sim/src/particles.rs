@@ -25,8 +25,7 @@ pub(crate) struct Particles {
     pub(crate) mass: Vec<f64>,
 }
 
-/// Memory a particle takes with its share of the grid [bytes]; measured as the growth of the resident set between two plates of
-/// 10⁵ and 10⁶ particles, rounded up.
+/// Memory a particle takes with its share of the grid and of a frame on its way to disk [bytes]: about 50 numbers of 8 bytes.
 const BYTES_PER_PARTICLE: u64 = 400;
 
 impl Particles {

@@ -97,8 +97,8 @@ const CONTACT_COURANT: f64 = 0.7;
 /// their mass than those of the cells it came from. Measured on a plate pulled until a crack crosses it: 0.5 and below hold, 0.7 fails in some runs.
 const GROWTH_COURANT: f64 = 0.5;
 
-/// Energy a run may have beyond what it was given, as a part of what was exchanged. Leapfrog energy itself ripples by (ωΔt)²/8 of the energy in
-/// a wave, a few per cent for the shortest; runs that fail gain without bound.
+/// Energy a run may have beyond what it was given, as a part of what was exchanged. Kinetic and strain energy belong to moments half a step apart, so their
+/// sum ripples by a few per cent where short waves run; a run that fails gains without bound.
 const ENERGY_TOLERANCE: f64 = 0.1;
 
 /// Increments one tip may take in one step: with a step of 0.9 h/c_d and quarter cells, more would be faster than any wave.

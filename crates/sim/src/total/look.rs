@@ -22,7 +22,7 @@ const STEPS_BETWEEN_CHECKS: u32 = 64;
 const SMALLEST_VOLUME_RATIO: f64 = 0.2;
 /// Principal stretch above which it is.
 const LARGEST_STRETCH: f64 = 3.0;
-/// Rounds of the Lanczos iteration: after so many the largest Ritz value is within 1 % on plates with and without cracks.
+/// Rounds of the Lanczos iteration. On a plate of 20 × 40 cells with an edge crack 40 rounds give 3.4910e8 1/s², 300 rounds 3.4914e8.
 const LANCZOS_ROUNDS: usize = 40;
 /// What the largest Ritz value may still miss.
 const RITZ_MARGIN: f64 = 1.01;
