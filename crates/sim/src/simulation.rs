@@ -415,35 +415,52 @@ impl Simulation {
         pieces::split(&self.particles, &self.state.cracks, self.scene.cell_size, &mut self.state.pieces);
     }
 
-    /// Brings the state to rest under the loads of time zero by kinetic damping: at every peak of the kinetic energy all velocities are set to zero.
+    /// Brings the state to rest under the loads of the present time; cracks do not grow.
     ///
-    /// Stops when the kinetic energy at a peak is below `tolerance` times the strain energy, or after `most_steps`; cracks do not grow. Returns the
-    /// number of steps. Loads with a curve act with its value at time zero.
+    /// Dynamic relaxation (Underwood 1983): velocities are damped at twice the frequency of the motion that is left, from its Rayleigh quotient, so that
+    /// the slowest motion comes to rest as fast as it can. Where the formulation cannot tell that frequency, velocities are set to zero at every
+    /// peak of the kinetic energy instead. Stops when no more than `tolerance` of the strain energy is left as kinetic energy over a whole round, or
+    /// after `most_steps`. Returns the number of steps.
     ///
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn relax(&mut self, tolerance: f64, most_steps: u64) -> Result<u64, SimulationError> {
         let time_step = self.largest_time_step();
-        let mut peak = 0.0;
+        let time = self.state.time;
+        let (mut peak, mut round_peak) = (0.0, 0.0_f64);
         let mut since = 0;
+        let mut steps = most_steps;
         for step in 1..=most_steps {
-            self.solver.step(&self.state.cracks, 0.0, time_step, &mut |_| ())?;
+            self.solver.step(&self.state.cracks, time, time_step, &mut |_| ())?;
             let kinetic = self.solver.kinetic_energy();
             since += 1;
-            if kinetic < peak && since >= STEPS_BETWEEN_STOPS {
-                self.solver.stop();
-                if peak <= tolerance * self.solver.energies().strain {
-                    self.measure_all();
-                    return Ok(step);
+            round_peak = round_peak.max(kinetic);
+            if since < RELAXATION_ROUND {
+                continue;
+            }
+            let rested = |kinetic: f64, solver: &dyn Solver| kinetic <= tolerance * solver.energies().strain;
+            if let Some(quotient) = self.solver.rayleigh_quotient() {
+                if rested(round_peak, &*self.solver) {
+                    steps = step;
+                    break;
                 }
-                peak = 0.0;
-                since = 0;
+                self.solver.set_damping(2.0 * quotient.sqrt());
+                (round_peak, since) = (0.0, 0);
+            } else if kinetic < peak {
+                self.solver.stop();
+                if rested(peak, &*self.solver) {
+                    steps = step;
+                    break;
+                }
+                (peak, since) = (0.0, 0);
             } else {
                 peak = kinetic.max(peak);
             }
         }
+        self.solver.set_damping(self.scene.solver.damping);
+        self.solver.stop();
         self.measure_all();
-        Ok(most_steps)
+        Ok(steps)
     }
 
     /// Measures every live tip now.
@@ -494,9 +511,8 @@ impl Simulation {
     }
 }
 
-/// Steps between two stops of the kinetic damping at least: the ripple of the shortest waves would otherwise stop a slow motion again and again before
-/// it has begun.
-const STEPS_BETWEEN_STOPS: u32 = 12;
+/// Steps between two looks of the dynamic relaxation at least: over fewer the ripple of the shortest waves shows instead of the motion that is left.
+const RELAXATION_ROUND: u32 = 12;
 
 /// A growing tip that has not moved for so many steps beyond its waiting time is at rest.
 const ARREST_STEPS: f64 = 50.0;

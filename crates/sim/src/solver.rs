@@ -115,6 +115,12 @@ pub(crate) trait Solver: std::fmt::Debug + Send {
     /// Sets all velocities to zero.
     fn stop(&mut self);
 
+    /// Rayleigh quotient ω² = v·K v / v·M v [1/s²] of the present velocities: what frequency the motion has. None where the formulation cannot tell cheaply.
+    fn rayleigh_quotient(&self) -> Option<f64>;
+
+    /// Lets velocities decay as exp(−rate t) from now on [1/s].
+    fn set_damping(&mut self, rate: f64);
+
     /// Energies now.
     fn energies(&self) -> SolverEnergies;
 

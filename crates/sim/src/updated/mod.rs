@@ -267,6 +267,15 @@ impl Solver for Updated {
         self.motion.fill(Motion::default());
     }
 
+    fn rayleigh_quotient(&self) -> Option<f64> {
+        // Its forces live on a grid that is laid anew in every step.
+        None
+    }
+
+    fn set_damping(&mut self, rate: f64) {
+        self.settings.damping = rate;
+    }
+
     fn energies(&self) -> SolverEnergies {
         SolverEnergies {
             kinetic: self.kinetic(),
