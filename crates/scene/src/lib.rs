@@ -16,6 +16,7 @@ mod presets;
 mod scene;
 mod settings;
 mod take;
+mod toughness;
 mod validate;
 
 pub use fault::{Key, KeyPath, SceneFault};
@@ -26,3 +27,4 @@ pub use presets::{material_preset, material_presets, solver_preset, updated_kern
 pub use scene::*;
 pub use settings::*;
 pub use take::*;
+pub use toughness::*;

@@ -1,7 +1,7 @@
 //! What the named presets of solver and materials stand for.
 
 use crate::document::MaterialKeys;
-use crate::scene::{Material, Plasticity};
+use crate::scene::{Curve, Material, Plasticity};
 use crate::settings::*;
 use serde::Deserialize;
 
@@ -28,7 +28,14 @@ pub fn solver_preset(preset: SolverPreset) -> (SolverSettings, GrowthSettings) {
                 area_term: true,
                 mode_split: ModeSplit::Interaction,
             },
-            GrowthSettings { enabled: true, increment: 0.25, bending: 1.0, speed_limit: 0.95 },
+            GrowthSettings {
+                enabled: true,
+                increment: 0.25,
+                bending: 1.0,
+                speed_limit: 0.95,
+                speed_curve: Curve::default(),
+                branching: None,
+            },
         ),
         SolverPreset::Thesis => (
             SolverSettings {
@@ -47,7 +54,14 @@ pub fn solver_preset(preset: SolverPreset) -> (SolverSettings, GrowthSettings) {
                 area_term: false,
                 mode_split: ModeSplit::OpeningDisplacement,
             },
-            GrowthSettings { enabled: true, increment: 0.5, bending: 1.0, speed_limit: 0.95 },
+            GrowthSettings {
+                enabled: true,
+                increment: 0.5,
+                bending: 1.0,
+                speed_limit: 0.95,
+                speed_curve: Curve::default(),
+                branching: None,
+            },
         ),
     }
 }
@@ -79,6 +93,7 @@ pub fn material_presets() -> Vec<Material> {
             poisson_ratio: keys.poisson_ratio.unwrap_or(f64::NAN),
             density: keys.density.unwrap_or(f64::NAN),
             fracture_toughness: keys.fracture_toughness.unwrap_or(f64::NAN),
+            limiting_speed: keys.limiting_speed,
             plasticity: keys.plasticity.and_then(|p| p.resolve(none)),
             name: keys.name,
         })

@@ -3,6 +3,7 @@
 use crate::frame::{End, Pose};
 use crate::geometry::{Point, Region, Vector};
 use crate::settings::{FrameSettings, GrowthSettings, OutputSettings, PlaneState, SolverSettings};
+use crate::toughness::ToughnessPatch;
 use serde::{Deserialize, Serialize};
 
 /// What the solver is asked to compute. Made by [`crate::load`]; every number is finite and in its range.
@@ -20,6 +21,8 @@ pub struct Scene {
     pub bodies: Vec<Body>,
     /// Initial cracks.
     pub cracks: Vec<Crack>,
+    /// Where bodies are tougher or weaker than their material; see [`Scene::toughness_factor`].
+    pub toughness: Vec<ToughnessPatch>,
     /// Rigid obstacles.
     pub colliders: Vec<Collider>,
     /// Acceleration of gravity [m/s²].
@@ -55,6 +58,8 @@ pub struct Material {
     pub density: f64,
     /// Fracture toughness K_Ic [Pa·√m].
     pub fracture_toughness: f64,
+    /// Highest speed of a crack tip in this material [m/s]; none: only [`GrowthSettings::speed_limit`] holds.
+    pub limiting_speed: Option<f64>,
     /// Plasticity; none: elastic.
     pub plasticity: Option<Plasticity>,
 }
@@ -79,8 +84,26 @@ pub struct Body {
     pub region: Region,
     /// Index of its material.
     pub material: usize,
+    /// Parts of another material; where they overlap the later one holds.
+    pub inclusions: Vec<Inclusion>,
     /// Initial velocities, added up.
     pub velocities: Vec<InitialVelocity>,
+}
+
+impl Body {
+    /// Index of the material at a place of the body at rest.
+    pub fn material_at(&self, place: Point) -> usize {
+        self.inclusions.iter().rev().find(|i| i.region.contains(place)).map_or(self.material, |i| i.material)
+    }
+}
+
+/// A part of a body of another material, perfectly bonded to the rest. It may reach beyond the body; only the common part counts.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Inclusion {
+    /// Where it is at rest.
+    pub region: Region,
+    /// Index of its material.
+    pub material: usize,
 }
 
 /// A part of the initial velocity field: v(X) = `velocity` + `angular_velocity` × (X − `center`) within `selection`.
@@ -132,6 +155,11 @@ pub struct Guide {
     pub name: String,
     /// Points, the first at the tip [m], at rest.
     pub points: Vec<Point>,
+    /// How much the path decides the direction of growth, 0 to 1: 0 the physical direction, 1 the drawn one, a blend between.
+    pub strength: f64,
+    /// How far along the guide the tip may have come: (time [s], fraction of the guide's length 0 to 1), both rising. Empty: fracture mechanics
+    /// decide when the crack grows.
+    pub schedule: Curve,
 }
 
 /// A shape that selects points.

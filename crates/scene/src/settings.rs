@@ -1,5 +1,6 @@
 //! Settings that a scene file and the solver share word for word.
 
+use crate::scene::Curve;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -143,7 +144,7 @@ pub struct SolverSettings {
 }
 
 /// When and where cracks grow, complete.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GrowthSettings {
     /// Whether cracks grow at all.
     pub enabled: bool,
@@ -153,6 +154,21 @@ pub struct GrowthSettings {
     pub bending: f64,
     /// Highest speed of a tip as a fraction of the Rayleigh wave speed, 0 to 1.
     pub speed_limit: f64,
+    /// Factor on `speed_limit` over time; empty: always 1.
+    pub speed_curve: Curve,
+    /// Division of tips into two; none: a tip stays one.
+    pub branching: Option<Branching>,
+}
+
+/// When a tip divides into two, and how.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Branching {
+    /// J / G_c from which on a tip divides, above 1.
+    pub release_ratio: f64,
+    /// Angle between each new tip and the old direction [rad].
+    pub half_angle: f64,
+    /// Least length of crack between two divisions [m].
+    pub spacing: f64,
 }
 
 /// Which frames to write.

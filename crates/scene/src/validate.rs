@@ -97,6 +97,9 @@ impl Scene {
             check("poisson_ratio", "Poisson's ratio", POISSON, m.poisson_ratio)?;
             check("density", "density", POSITIVE, m.density)?;
             check("fracture_toughness", "fracture toughness", POSITIVE, m.fracture_toughness)?;
+            if let Some(speed) = m.limiting_speed {
+                check("limiting_speed", "the highest crack speed", POSITIVE, speed)?;
+            }
             if let Some(p) = m.plasticity {
                 check("plasticity", "critical compression", BELOW_ONE, p.critical_compression)?;
                 check("plasticity", "critical stretch", POSITIVE, p.critical_stretch)?;

@@ -105,6 +105,7 @@ mod tests {
             poisson_ratio: 0.3,
             density: 1.0,
             fracture_toughness: 1.0,
+            limiting_speed: None,
             plasticity: None,
         };
         for plane in [PlaneState::Strain, PlaneState::Stress] {

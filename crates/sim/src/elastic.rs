@@ -76,6 +76,7 @@ mod tests {
             poisson_ratio,
             density,
             fracture_toughness: 1.0,
+            limiting_speed: None,
             plasticity: None,
         };
         Elastic::new(&material, plane)

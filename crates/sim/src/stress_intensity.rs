@@ -139,6 +139,7 @@ mod tests {
             poisson_ratio,
             density: 8000.0,
             fracture_toughness: 1.0,
+            limiting_speed: None,
             plasticity: None,
         };
         Elastic::new(&material, plane)

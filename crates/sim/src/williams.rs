@@ -140,6 +140,7 @@ mod tests {
             poisson_ratio,
             density: 1.2,
             fracture_toughness: 1.0,
+            limiting_speed: None,
             plasticity: None,
         };
         Elastic::new(&material, plane)

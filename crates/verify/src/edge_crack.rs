@@ -95,12 +95,14 @@ impl EdgeCrack {
                 poisson_ratio: POISSON,
                 density: 1000.0,
                 fracture_toughness: 1e12,
+                limiting_speed: None,
                 plasticity: None,
             }],
             bodies: vec![Body {
                 name: "plate".into(),
                 region: Region { exterior: corners.map(|(x, y)| Point::new(x, y)).to_vec(), holes: Vec::new() },
                 material: 0,
+                inclusions: Vec::new(),
                 velocities: Vec::new(),
             }],
             cracks: vec![Crack {
@@ -112,6 +114,7 @@ impl EdgeCrack {
                 start_guide: None,
                 end_guide: None,
             }],
+            toughness: Vec::new(),
             colliders: Vec::new(),
             gravity: Vector::zeros(),
             loads: vec![pull(BoxSide::Top, TRACTION), pull(BoxSide::Bottom, -TRACTION)],

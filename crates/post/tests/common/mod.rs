@@ -3,7 +3,7 @@
 
 use fissure_post::PostOptions;
 use fissure_scene::{
-    Body, CrackEnd, CrackFrame, Formulation, Frame, FrameSettings, GrowthSettings, JMethod, Kernel, Material,
+    Body, CrackEnd, CrackFrame, Curve, Formulation, Frame, FrameSettings, GrowthSettings, JMethod, Kernel, Material,
     ModeSplit, OnDistortion, OutlineFrame, OutputSettings, Part, ParticleFrame, PlaneState, Point, Region, Scene,
     SolverSettings, TipDivision, Transfer, UpAxis, Vector,
 };
@@ -16,6 +16,7 @@ pub fn scene(region: Region) -> Scene {
         poisson_ratio: 0.2,
         density: 2500.0,
         fracture_toughness: 0.75e6,
+        limiting_speed: None,
         plasticity: None,
     };
     Scene {
@@ -23,8 +24,15 @@ pub fn scene(region: Region) -> Scene {
         hash: "0".repeat(64),
         plane: PlaneState::Strain,
         materials: vec![material],
-        bodies: vec![Body { name: "plate".into(), region, material: 0, velocities: Vec::new() }],
+        bodies: vec![Body {
+            name: "plate".into(),
+            region,
+            material: 0,
+            inclusions: Vec::new(),
+            velocities: Vec::new(),
+        }],
         cracks: Vec::new(),
+        toughness: Vec::new(),
         colliders: Vec::new(),
         gravity: Vector::zeros(),
         loads: Vec::new(),
@@ -47,7 +55,14 @@ pub fn scene(region: Region) -> Scene {
             area_term: true,
             mode_split: ModeSplit::Interaction,
         },
-        growth: GrowthSettings { enabled: true, increment: 0.25, bending: 1.0, speed_limit: 0.9 },
+        growth: GrowthSettings {
+            enabled: true,
+            increment: 0.25,
+            bending: 1.0,
+            speed_limit: 0.9,
+            speed_curve: Curve::default(),
+            branching: None,
+        },
         frames: FrameSettings { first: 1, last: 10, rate: 24.0 },
         output: OutputSettings {
             thickness: 0.3,

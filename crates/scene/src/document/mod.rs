@@ -93,6 +93,8 @@ pub struct MaterialKeys {
     pub density: Option<f64>,
     /// Fracture toughness K_Ic in Pa·√m.
     pub fracture_toughness: Option<f64>,
+    /// Highest speed of a crack tip in m/s. Default: only `growth.speed_limit` holds.
+    pub limiting_speed: Option<f64>,
     /// `false`: elastic; `true`: snow's plasticity; or its values.
     pub plasticity: Option<PlasticityKeys>,
 }

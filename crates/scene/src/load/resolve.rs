@@ -66,6 +66,7 @@ impl<'d> Resolver<'d> {
             output: self.output(side)?,
             colliders: self.colliders(tolerance)?,
             cracks: Vec::new(),
+            toughness: Vec::new(),
             loads: Vec::new(),
             supports: Vec::new(),
             materials,
@@ -189,7 +190,7 @@ impl<'d> Resolver<'d> {
                         center: keys.center.map_or_else(|| center_of_area(&region), Point::from),
                     });
                 }
-                bodies.push(Body { name, region, material, velocities });
+                bodies.push(Body { name, region, material, inclusions: Vec::new(), velocities });
                 self.body_origin.push(i);
             }
         }
@@ -243,6 +244,7 @@ impl<'d> Resolver<'d> {
             poisson_ratio: value(keys.poisson_ratio, "poisson_ratio", |m| m.poisson_ratio)?,
             density: value(keys.density, "density", |m| m.density)?,
             fracture_toughness: value(keys.fracture_toughness, "fracture_toughness", |m| m.fracture_toughness)?,
+            limiting_speed: keys.limiting_speed.or_else(|| base.as_ref().and_then(|m| m.limiting_speed)),
             plasticity: match (keys.plasticity, snow) {
                 (Some(own), Some(snow)) => own.resolve(snow),
                 _ => base.and_then(|m| m.plasticity),
@@ -645,7 +647,7 @@ impl<'d> Resolver<'d> {
                 let message = format!("guide `{guide}` does not fit crack `{}`: {message}", crack.name);
                 SceneFault::new(line_path, message, remedy)
             })?;
-            let fitted = Some(Guide { name: guide.clone(), points });
+            let fitted = Some(Guide { name: guide.clone(), points, strength: 1.0, schedule: Curve::default() });
             *[&mut crack.start_guide, &mut crack.end_guide][end] = fitted;
         }
         Ok(())
