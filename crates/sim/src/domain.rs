@@ -80,10 +80,12 @@ pub(crate) fn domain_integrals(
     DomainIntegrals { j_integral: j, mode_1: half_modulus * m[0], mode_2: half_modulus * m[1] }
 }
 
-/// The place, moved onto the straight crack's own face when a bent crack has it on the other side of the tip's line.
+/// The place, moved onto the straight crack's own face when a bent crack has it on the other side of the tip's line, or when it lies on that line but for
+/// round-off: a particle midway between the two that the line was centred on does.
 fn beside_crack(place: Vector, side: Side) -> Vector {
-    if place.x < 0.0 && place.y * side.sign() < 0.0 {
-        Vector::new(-place.norm(), 0.0_f64.copysign(side.sign()))
+    let distance = place.norm();
+    if place.x < 0.0 && place.y * side.sign() < 1e-9 * distance {
+        Vector::new(-distance, 0.0_f64.copysign(side.sign()))
     } else {
         place
     }

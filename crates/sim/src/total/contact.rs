@@ -20,6 +20,9 @@ pub(super) struct ContactPair {
     segment: u32,
 }
 
+/// Faces that overlap by less than this part of their displacement touch by round-off only: where a crack has just come, its faces still lie on each other.
+const ROUND_OFF: f64 = 1e-12;
+
 impl Total {
     /// All pairs of fields that face each other across one crack.
     pub(super) fn contact_pairs(&self, cracks: &[Crack]) -> Vec<ContactPair> {
@@ -34,10 +37,15 @@ impl Total {
                     let (above, below) = if side == Side::Above { (first.1, second.1) } else { (second.1, first.1) };
                     let Some(line) = cracks.get(crack as usize) else { continue };
                     let place = self.grid.position(node);
-                    let segment = (0..line.points.len() - 1)
-                        .map(|s| (crate::particles::distance_to_segment(place, line.points[s], line.points[s + 1]), s))
-                        .min_by(|a, b| a.0.total_cmp(&b.0))
-                        .map_or(0, |x| x.1);
+                    // Around a vertex both its segments are equally near, up to round-off: the first one counts.
+                    let clearly = 1e-9 * self.grid.cell_size;
+                    let (mut nearest, mut segment) = (f64::INFINITY, 0);
+                    for (s, w) in line.points.windows(2).enumerate() {
+                        let distance = crate::particles::distance_to_segment(place, w[0], w[1]);
+                        if distance < nearest - clearly {
+                            (nearest, segment) = (distance, s);
+                        }
+                    }
                     pairs.push(ContactPair { above, below, crack, segment: segment as u32 });
                 }
             }
@@ -71,7 +79,8 @@ impl Total {
             }
             let Some(n) = self.segment_normal(pair.crack, pair.segment) else { continue };
             let approach = speed.dot(&n);
-            if approach >= 0.0 || gap.dot(&n) >= 0.0 {
+            let touching = ROUND_OFF * (u[0][a].abs() + u[1][a].abs() + u[0][b].abs() + u[1][b].abs());
+            if approach >= 0.0 || gap.dot(&n) >= -touching {
                 continue;
             }
             let (mass_a, mass_b) = (self.state.mass[a], self.state.mass[b]);

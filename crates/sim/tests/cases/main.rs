@@ -1,0 +1,6 @@
+//! What the solver does as its users see it, from a scene to frames, against closed forms, symmetries and scalings.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod common;
+mod scale;
+mod threads;
