@@ -8,7 +8,7 @@ use crate::measure::Gauge;
 use crate::particles::{self, Particles};
 use crate::solver::{Observed, Solver};
 use crate::{SimulationError, pieces, saved};
-use fissure_scene::{CrackEnd, End, Energies, Formulation, Frame, Pose, Scene, TipState};
+use fissure_scene::{CrackEnd, End, Energies, Formulation, Frame, Pose, Scene, TipRecord, TipState};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
@@ -265,10 +265,13 @@ impl Simulation {
         self.state.steps
     }
 
-    /// The current state as a frame.
-    pub fn frame(&self) -> Frame {
-        let mut particles = self.solver.particle_frame();
-        particles.piece.clone_from(&self.state.pieces);
+    /// Time since the start [s].
+    pub fn time(&self) -> f64 {
+        self.state.time
+    }
+
+    /// What was measured last at each tip that is or was live, as in a frame.
+    pub fn tips(&self) -> Vec<TipRecord> {
         let observed = self.solver.observed();
         let cracks = &self.state.cracks;
         let mut tips = Vec::new();
@@ -281,20 +284,32 @@ impl Simulation {
                 }
             }
         }
+        tips
+    }
+
+    /// Energy budget now, as in a frame.
+    pub fn energies(&self) -> Energies {
         let energies = self.solver.energies();
+        Energies {
+            kinetic: energies.kinetic,
+            strain: energies.strain,
+            external_work: energies.external_work,
+            crack: self.state.crack_energy,
+        }
+    }
+
+    /// The current state as a frame.
+    pub fn frame(&self) -> Frame {
+        let mut particles = self.solver.particle_frame();
+        particles.piece.clone_from(&self.state.pieces);
         Frame {
             number: self.state.frame_number,
             time: self.state.time,
             particles,
             outlines: self.solver.outline_frames(),
-            cracks: self.solver.crack_frames(cracks),
-            tips,
-            energies: Energies {
-                kinetic: energies.kinetic,
-                strain: energies.strain,
-                external_work: energies.external_work,
-                crack: self.state.crack_energy,
-            },
+            cracks: self.solver.crack_frames(&self.state.cracks),
+            tips: self.tips(),
+            energies: self.energies(),
             colliders: self.collider_poses(),
         }
     }
