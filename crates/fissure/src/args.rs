@@ -50,6 +50,13 @@ pub(crate) enum Command {
         after_help = "Example:\n  fissure post out/pull/pull.take --thickness 0.2 --formats glb,ply --frames 1-45x2"
     )]
     Post(PostArguments),
+    /// Compute problems with known solutions and print what comes out beside what should.
+    ///
+    /// A missed target is printed as such and is no failure.
+    #[command(
+        after_help = "Examples:\n  fissure verify edge-crack   one case\n  fissure verify all          the full table"
+    )]
+    Verify(VerifyArguments),
     /// Print the JSON schema of scene files, for editors.
     #[command(after_help = "Example:\n  fissure schema > scene.schema.json")]
     Schema,
@@ -155,6 +162,31 @@ pub(crate) struct PostArguments {
     pub(crate) threads: Option<u16>,
 }
 
+/// Arguments of `verify`.
+#[derive(Debug, Args)]
+pub(crate) struct VerifyArguments {
+    /// The case, or `all`.
+    pub(crate) name: Option<String>,
+    /// Print the names of all cases.
+    #[arg(long)]
+    pub(crate) list: bool,
+    /// Run all cases.
+    #[arg(long)]
+    pub(crate) all: bool,
+    /// Resolution: cells per characteristic length, which `--list` names for each case [default: that of the targets].
+    #[arg(long, value_name = "N", value_parser = parse_cells)]
+    pub(crate) cells: Option<f64>,
+    /// Put the tip at 16 places within a cell in every variant of the cases that vary it.
+    #[arg(long)]
+    pub(crate) all_offsets: bool,
+    /// Print Markdown.
+    #[arg(long)]
+    pub(crate) markdown: bool,
+    /// Threads to compute with [default: one per core]. The numbers do not depend on it.
+    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+}
+
 /// How to speak.
 #[derive(Debug, Clone, Copy, Args)]
 pub(crate) struct TalkArguments {
@@ -199,6 +231,11 @@ fn parse_thickness(word: &str) -> Result<f64, String> {
     } else {
         Err("the thickness must be above 0 and finite [m]".to_owned())
     }
+}
+
+fn parse_cells(word: &str) -> Result<f64, String> {
+    let value: f64 = word.parse().map_err(|_| "not a number".to_owned())?;
+    if (4.0..=1024.0).contains(&value) { Ok(value) } else { Err("the cells must be 4 to 1024".to_owned()) }
 }
 
 #[cfg(test)]

@@ -18,6 +18,7 @@ mod schema;
 mod sim;
 mod solve;
 mod threads;
+mod verify;
 mod workers;
 
 use args::{Arguments, Command};
@@ -53,6 +54,7 @@ fn execute(command: &Command, report: &Report) -> Result<Exit, Failure> {
         Command::Run(arguments) => run::run(arguments, report),
         Command::Sim(arguments) => sim::sim(arguments, report),
         Command::Post(arguments) => post::post(arguments, report),
+        Command::Verify(arguments) => verify::verify(arguments, report),
         Command::Schema => schema::schema(),
     }
 }

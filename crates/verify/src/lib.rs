@@ -1,7 +1,9 @@
-//! Fracture problems with their solutions: the scene that computes each, and the number it should give.
+//! Problems with known solutions: the scene that computes each, and the numbers it should give.
 //!
 //! Promises: every reference number names where it comes from, and every scene is complete, so that a test, an example or a chart runs the very same
-//! problem. Does not promise that a scene meets its reference: that is for the tests to say.
+//! problem. Does not promise that a scene meets its reference: that is for the report to say.
+//!
+//! A [`Case`] is run with [`Options`] and gives a [`Report`] of [`Row`]s; [`text`] and [`markdown`] print it.
 //!
 //! ```
 //! use fissure_scene::SolverPreset;
@@ -13,6 +15,14 @@
 //! # Ok::<(), fissure_sim::SimulationError>(())
 //! ```
 
-mod edge_crack;
+mod case;
+mod cases;
+mod interpolate;
+mod problem;
+mod report;
+mod table;
 
-pub use edge_crack::{EdgeCrack, EdgeCrackResult};
+pub use case::{CASES, Case, Options, Progress, find};
+pub use cases::edge_crack::{EdgeCrack, EdgeCrackResult};
+pub use report::{Expected, Report, Row};
+pub use table::{markdown, text};

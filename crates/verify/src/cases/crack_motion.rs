@@ -1,0 +1,81 @@
+//! The crack-tip equation of motion: how far a crack runs that starts under a step of tension and takes the speed its energy balance asks for.
+//!
+//! Setup in [`super::stepped_plate`]. The toughness is K_I of the resting crack τ = 0.6 t_c after the step's arrival; the crack starts then and runs straight
+//! (`bending` is 0). Reference: g(v(t)) = τ/(t − t_c), Freund's universal function g, whatever the history (Freund 1990); integrated here. An own finite
+//! element solution driven with this v(t) gives G/G_c = 1.02 to 1.04. 40 cells are h = 0.05 m. Cells are counted over half the height of the plate.
+
+use super::stepped_plate::SteppedPlate;
+use crate::case::{Case, Options};
+use crate::report::{Expected, Tally};
+use fissure_sim::{Elastic, Simulation, SimulationError, universal_function};
+use std::ops::ControlFlow;
+
+pub(crate) const CASE: Case = Case::new(
+    "crack-motion",
+    "run of a crack by its own energy balance after a step of tension",
+    ("over half the height of the plate", 40.0),
+    compute,
+);
+
+/// τ/t_c.
+const DELAY: f64 = 0.6;
+
+/// v [m/s] at which the universal function g has the value `wanted`, 0 to 1: g falls from 1 at rest to 0 at c_R.
+fn speed_of(elastic: &Elastic, wanted: f64) -> f64 {
+    let (mut low, mut high) = (0.0, elastic.rayleigh_wave_speed());
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if universal_function(elastic, middle) > wanted {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// Length run [m] at the time `t`, in delays τ after the arrival; `tau` in s.
+fn run(elastic: &Elastic, t: f64, tau: f64) -> f64 {
+    const PARTS: usize = 200;
+    let step = (t - 1.0) / PARTS as f64;
+    // Midpoint rule: g is smooth after the start.
+    (0..PARTS).map(|k| speed_of(elastic, 1.0 / (1.0 + step * (k as f64 + 0.5)))).sum::<f64>() * step * tau
+}
+
+fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationError> {
+    let cells = options.cells_or(CASE.cells.1).round();
+    for offset in [[0.125, 0.51], [0.375, 0.76]] {
+        tally.say(&format!("tip at {offset:?}"));
+        let at_rest = SteppedPlate { cell_size: 2.0 / cells, offset, toughness: 1e30 };
+        let arrival = at_rest.arrival();
+        let plate = SteppedPlate { toughness: at_rest.mode_1((1.0 + DELAY) * arrival), ..at_rest };
+        let elastic = plate.elastic();
+        let mut problem = plate.problem(2.6).growing();
+        problem.scene.growth.bending = 0.0;
+        let mut simulation = Simulation::new(&problem.scene)?;
+        let mut history: Vec<(f64, f64)> = vec![(0.0, 0.0)];
+        tally.run(&mut simulation, |now, _| {
+            history.push((now.time(), now.tips()[0].length - plate.tip().0));
+            ControlFlow::Continue(())
+        })?;
+        let of = format!("tip at {offset:?}");
+        let start = history.iter().find(|h| h.1 > 0.0).map_or(f64::NAN, |h| h.0 / arrival);
+        tally.absolute(format!("start, {of}"), "t_c", start, 1.0 + DELAY, 0.05);
+        for (t, within) in [(2.0, None), (2.2, None), (2.4, Some(0.1)), (2.6, None)] {
+            let found = crate::interpolate::linear(&history, t * arrival);
+            let reference = run(&elastic, (t - 1.0) / DELAY, DELAY * arrival);
+            tally.relative(format!("Δa at {t} t_c, {of}"), "m", found, reference, within);
+        }
+        // Over four cells at least: the tip moves in increments.
+        let four = 4.0 * plate.cell_size;
+        let mut fastest = 0.0_f64;
+        for (i, from) in history.iter().enumerate() {
+            if let Some(to) = history[i..].iter().find(|h| h.1 - from.1 >= four) {
+                fastest = fastest.max((to.1 - from.1) / (to.0 - from.0));
+            }
+        }
+        let limit = Expected::AtMost(1.0);
+        tally.bound(format!("highest speed over 4 cells, {of}"), "c_R", fastest / elastic.rayleigh_wave_speed(), limit);
+    }
+    Ok(())
+}
