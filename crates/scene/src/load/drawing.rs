@@ -3,8 +3,8 @@
 //! Paint does not matter: an element counts whether or not it is filled, stroked or displayed. Curves come from usvg in
 //! single precision, about 1e-7 of the size of the drawing.
 
-use super::cracks::Complaint;
 use super::error::{LoadError, read_bytes, read_text};
+use super::seating::Complaint;
 use crate::document::{Drawing, Origin};
 use crate::fault::{KeyPath, SceneFault, nearest, show};
 use crate::geometry::{Point, Region, bounds};

@@ -1,10 +1,10 @@
 //! From a scene file to a [`Scene`]: defaults, then the file, then overrides.
 
-mod cracks;
 mod drawing;
 mod error;
 mod overrides;
 mod resolve;
+mod seating;
 mod source;
 mod template;
 

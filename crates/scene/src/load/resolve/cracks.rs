@@ -1,0 +1,167 @@
+//! Cracks and their guides.
+
+use super::{Resolved, Resolver};
+use crate::document::{CrackKeys, Tips};
+use crate::fault::{KeyPath, SceneFault, nearest, show};
+use crate::geometry::Point;
+use crate::load::seating::{fit_guide, seat_crack};
+use crate::scene::*;
+use crate::validate::live_mouth;
+
+/// Crack ends this near to the outline, in particle spacings, lie on it: twice what flattening may move the outline by.
+const MOUTH_TOLERANCE: f64 = 2.0 * super::FLATTENING;
+/// A guide this near to the tip or crack, in particle spacings, starts there or runs along it.
+const GUIDE_TOLERANCE: f64 = 0.5;
+
+impl<'d> Resolver<'d> {
+    pub(super) fn cracks(&self, scene: &mut Scene, tolerance: f64) -> Resolved<()> {
+        for (i, keys) in self.document.crack.iter().enumerate() {
+            let path = KeyPath::item("crack", i);
+            let name = keys.name.clone().unwrap_or_else(|| format!("crack-{}", i + 1));
+            let line_path = path.then("line");
+            let line = self.line(&line_path, &keys.line, tolerance)?;
+            let body = self.body_of_crack(&path, keys, &name, &line, scene)?;
+            let reach = MOUTH_TOLERANCE * scene.particle_spacing;
+            let body_name = scene.bodies[body].name.clone();
+            let seated = seat_crack(&line, &mut scene.bodies[body].region, reach).map_err(|(message, remedy)| {
+                let message = format!("crack `{name}` is not inside body `{body_name}`: {message}");
+                SceneFault::new(line_path.clone(), message, remedy)
+            })?;
+            let live = live_ends(&path, keys.tips, &name, &seated.points, seated.mouths)?;
+            let mut crack = Crack {
+                body,
+                start_live: live[0],
+                end_live: live[1],
+                start_guide: None,
+                end_guide: None,
+                points: seated.points,
+                name,
+            };
+            self.guides(&path, keys, &mut crack, &line, GUIDE_TOLERANCE * scene.particle_spacing, tolerance)?;
+            scene.cracks.push(crack);
+        }
+        Ok(())
+    }
+
+    pub(super) fn body_of_crack(
+        &self,
+        path: &KeyPath,
+        keys: &CrackKeys,
+        name: &str,
+        line: &[Point],
+        scene: &Scene,
+    ) -> Resolved<usize> {
+        let candidates: Vec<usize> = match &keys.body {
+            // A drawing of several outlines: any of the bodies made from it.
+            Some(wanted) => {
+                let exact = scene.bodies.iter().position(|b| &b.name == wanted);
+                let several =
+                    (0..scene.bodies.len()).filter(|&b| &self.document.body[self.body_origin[b]].name == wanted);
+                exact.map_or_else(|| several.collect(), |b| vec![b])
+            }
+            None => (0..scene.bodies.len()).collect(),
+        };
+        match (candidates.as_slice(), &keys.body) {
+            ([only], _) => return Ok(*only),
+            ([], Some(wanted)) => return self.body(path.then("body"), wanted, scene),
+            _ => {}
+        }
+        let inside: Vec<usize> = candidates
+            .iter()
+            .copied()
+            .filter(|&b| {
+                let region = &scene.bodies[b].region;
+                let middles = line.windows(2).map(|w| nalgebra::center(&w[0], &w[1]));
+                line.iter().copied().chain(middles).any(|p| region.contains(p))
+            })
+            .collect();
+        match inside.as_slice() {
+            [only] => Ok(*only),
+            [] => {
+                let message = format!("crack `{name}` is outside of every body (it starts at {} m)", show(line[0]));
+                Err(SceneFault::new(path.then("line"), message, "move it into a body"))
+            }
+            several => {
+                let names: Vec<_> = several.iter().map(|&b| format!("`{}`", scene.bodies[b].name)).collect();
+                let message = format!("crack `{name}` runs through the bodies {}", names.join(", "));
+                Err(SceneFault::new(path.then("line"), message, "say which one it belongs to: `body = \"...\"`"))
+            }
+        }
+    }
+
+    /// Fits the guides of one crack; `drawn` is its line before it was cut at the outline, `reach` how far off a guide may be.
+    pub(super) fn guides(
+        &self,
+        path: &KeyPath,
+        keys: &CrackKeys,
+        crack: &mut Crack,
+        drawn: &[Point],
+        reach: f64,
+        tolerance: f64,
+    ) -> Resolved<()> {
+        let only_live = match (crack.start_live, crack.end_live) {
+            (true, false) => Some(0),
+            (false, true) => Some(1),
+            _ => None,
+        };
+        let mut wanted =
+            [keys.guide_start.as_ref().map(|g| (g, "guide_start")), keys.guide_end.as_ref().map(|g| (g, "guide_end"))];
+        if let Some(guide) = &keys.guide {
+            let Some(end) = only_live.filter(|&end| wanted[end].is_none()) else {
+                let message = format!("`guide = \"{guide}\"` needs exactly one live tip without a guide of its own");
+                return Err(SceneFault::new(
+                    path.then("guide"),
+                    message,
+                    "use `guide_start` or `guide_end`, or name one end in `tips`",
+                ));
+            };
+            wanted[end] = Some((guide, "guide"));
+        }
+        for (end, (guide, key)) in wanted.into_iter().enumerate().filter_map(|(end, w)| Some((end, w?))) {
+            let path = path.then(key);
+            let live = [crack.start_live, crack.end_live][end];
+            let (Some(&tip), true) = ([crack.points.first(), crack.points.last()][end], live) else {
+                let word = ["start", "end"][end];
+                let message =
+                    format!("guide `{guide}` leads the {word} of crack `{}`, which is no live tip", crack.name);
+                return Err(SceneFault::new(path, message, "guide a live tip"));
+            };
+            let names: Vec<&str> = self.document.guide.iter().map(|g| g.name.as_str()).collect();
+            let Some(index) = names.iter().position(|n| n == guide) else {
+                return Err(SceneFault::new(path, format!("there is no guide `{guide}`"), nearest(guide, &names)));
+            };
+            let line_path = KeyPath::item("guide", index).then("line");
+            let line = self.line(&line_path, &self.document.guide[index].line, tolerance)?;
+            let points = fit_guide(&line, tip, drawn, reach).map_err(|(message, remedy)| {
+                let message = format!("guide `{guide}` does not fit crack `{}`: {message}", crack.name);
+                SceneFault::new(line_path, message, remedy)
+            })?;
+            let fitted = Some(Guide { name: guide.clone(), points, strength: 1.0, schedule: Curve::default() });
+            *[&mut crack.start_guide, &mut crack.end_guide][end] = fitted;
+        }
+        Ok(())
+    }
+}
+
+/// Which ends are live: as named, or every end inside the body.
+pub(super) fn live_ends(
+    path: &KeyPath,
+    tips: Option<Tips>,
+    name: &str,
+    points: &[Point],
+    mouths: [bool; 2],
+) -> Resolved<[bool; 2]> {
+    let live = match tips {
+        None => [!mouths[0], !mouths[1]],
+        Some(Tips::Start) => [true, false],
+        Some(Tips::End) => [false, true],
+        Some(Tips::Both) => [true, true],
+        Some(Tips::None) => [false, false],
+    };
+    for (end, word) in ["start", "end"].into_iter().enumerate() {
+        if live[end] && mouths[end] {
+            return Err(live_mouth(path, name, word, points[end * (points.len() - 1)]));
+        }
+    }
+    Ok(live)
+}

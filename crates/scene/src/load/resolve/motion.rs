@@ -1,0 +1,191 @@
+//! What moves and holds the bodies: colliders, loads, supports, velocities.
+
+use super::shapes::{center_of_area, points, rectangle};
+use super::{Resolved, Resolver};
+use crate::document::*;
+use crate::fault::{KeyPath, SceneFault};
+use crate::frame::Pose;
+use crate::geometry::{Point, Region, Vector};
+use crate::scene::*;
+use crate::validate::{finite_pair, unit, validate_region};
+
+impl<'d> Resolver<'d> {
+    pub(super) fn colliders(&self, tolerance: f64) -> Resolved<Vec<Collider>> {
+        self.document.collider.iter().enumerate().map(|(i, keys)| self.collider(i, keys, tolerance)).collect()
+    }
+
+    pub(super) fn collider(&self, i: usize, keys: &ColliderKeys, tolerance: f64) -> Resolved<Collider> {
+        let path = KeyPath::item("collider", i);
+        let shape_path = path.then("shape");
+        let name = keys.name.clone().unwrap_or_else(|| format!("collider-{}", i + 1));
+        if self.document.collider[..i].iter().any(|c| c.name.as_ref() == Some(&name)) {
+            let message = format!("two colliders are called `{name}`");
+            return Err(SceneFault::new(path.then("name"), message, "give each its own name"));
+        }
+        let from_region = |region: Region| {
+            let center = center_of_area(&region);
+            let ring = region.exterior.iter().map(|p| Point::from(p - center)).collect();
+            (ColliderShape::Polygon { ring }, center)
+        };
+        let (shape, origin) = match &keys.shape {
+            ColliderShapeKeys::HalfPlane(h) => {
+                finite_pair(shape_path.then("half_plane"), "the point of the half-plane", h.point)?;
+                (ColliderShape::HalfPlane { normal: unit(Vector::from(h.normal)) }, Point::from(h.point))
+            }
+            ColliderShapeKeys::Disc(d) => {
+                finite_pair(shape_path.then("disc"), "the centre of the disc", d.center)?;
+                (ColliderShape::Disc { radius: d.radius }, Point::from(d.center))
+            }
+            ColliderShapeKeys::Box(b) => {
+                let region = rectangle(&shape_path.then("box"), b.min, b.max)?;
+                let (low, high) = region.bounds();
+                (ColliderShape::Box { half_extents: (high - low) / 2.0 }, nalgebra::center(&low, &high))
+            }
+            ColliderShapeKeys::Polygon(corners) => {
+                let shape = Shape::Polygon(PolygonKeys { exterior: corners.clone(), holes: Vec::new() });
+                let region = self.regions(&shape_path, &shape, tolerance)?.swap_remove(0);
+                validate_region(&shape_path, &format!("the outline of collider `{name}`"), &region)?;
+                from_region(region)
+            }
+            ColliderShapeKeys::Svg(id) => {
+                let mut regions = self.regions(&shape_path, &Shape::Svg(id.clone()), tolerance)?;
+                if regions.len() != 1 || !regions[0].holes.is_empty() {
+                    let holes: usize = regions.iter().map(|r| r.holes.len()).sum();
+                    let message = format!("`{id}` has {} outlines and {holes} holes", regions.len());
+                    return Err(SceneFault::new(shape_path, message, "a collider is one outline without holes"));
+                }
+                from_region(regions.swap_remove(0))
+            }
+        };
+        let still = [Keyframe { time: 0.0, position: [0.0; 2], angle: 0.0 }];
+        let keyframes = if keys.keyframes.is_empty() { &still[..] } else { &keys.keyframes };
+        let keyframes = keyframes
+            .iter()
+            .map(|k| {
+                let pose = Pose { position: origin + Vector::from(k.position), angle: k.angle.to_radians() };
+                (k.time, pose)
+            })
+            .collect();
+        Ok(Collider { name, shape, keyframes, contact: keys.contact, friction: keys.friction })
+    }
+
+    pub(super) fn selection(
+        &self,
+        path: &KeyPath,
+        select: &Select,
+        scene: &Scene,
+        tolerance: f64,
+    ) -> Resolved<Selection> {
+        let path = path.then("select");
+        let body = match &select.body {
+            Some(name) => Some(self.body(path.then("body"), name, scene)?),
+            None => None,
+        };
+        let combined = |keys: &str| {
+            SceneFault::new(path.clone(), format!("a selection cannot combine {keys}"), "select by one of them")
+        };
+        match (select.edge, &select.region, &select.near) {
+            (Some(_), Some(_), _) => Err(combined("`edge` and `region`")),
+            (Some(_), _, Some(_)) => Err(combined("`edge` and `near`")),
+            (_, Some(_), Some(_)) => Err(combined("`region` and `near`")),
+            (None, Some(_), _) | (None, _, Some(_)) if body.is_some() => {
+                Err(combined("`body` with `region` or `near`"))
+            }
+            _ if select.radius.is_some() != select.near.is_some() => {
+                let message = "`near` and `radius` belong together";
+                Err(SceneFault::new(path, message, "write `select = { near = [[x, y]], radius = ... }`"))
+            }
+            (Some(side), None, None) => Ok(Selection::Edge { side, body }),
+            (None, Some(shape), None) => {
+                let path = path.then("region");
+                let mut regions = self.regions(&path, shape, tolerance)?;
+                if regions.len() != 1 {
+                    let message = format!("the shape has {} separate outlines", regions.len());
+                    return Err(SceneFault::new(path, message, "select one outline at a time"));
+                }
+                Ok(Selection::Region(regions.swap_remove(0)))
+            }
+            (None, None, Some(near)) => {
+                Ok(Selection::Near { points: points(near), radius: select.radius.unwrap_or_default() })
+            }
+            (None, None, None) => Ok(body.map_or(Selection::All, Selection::Body)),
+        }
+    }
+
+    pub(super) fn loads(&self, scene: &Scene, tolerance: f64) -> Resolved<Vec<Load>> {
+        let each = |(i, keys): (usize, &LoadKeys)| {
+            let path = KeyPath::item("load", i);
+            let kind = match (keys.force, keys.traction, &keys.per_point) {
+                (Some(f), None, None) => LoadKind::Force(Vector::from(f)),
+                (None, Some(t), None) => LoadKind::Traction(Vector::from(t)),
+                (None, None, Some(forces)) => {
+                    LoadKind::PerPoint(forces.iter().map(|f| (Point::from(f.at), Vector::from(f.force))).collect())
+                }
+                _ => {
+                    let message = "a load needs exactly one of `force`, `traction` and `per_point`";
+                    return Err(SceneFault::new(path, message, "keep one of them, or write several `[[load]]`"));
+                }
+            };
+            Ok(Load {
+                selection: self.selection(&path, &keys.select, scene, tolerance)?,
+                kind,
+                curve: curve(&keys.curve),
+            })
+        };
+        self.document.load.iter().enumerate().map(each).collect()
+    }
+
+    pub(super) fn supports(&self, scene: &Scene, tolerance: f64) -> Resolved<Vec<Support>> {
+        let each = |(i, keys): (usize, &SupportKeys)| {
+            let path = KeyPath::item("support", i);
+            let velocity = match (keys.fix, keys.velocity_x, keys.velocity_y) {
+                (Some(Fix::X), None, None) => [Some(0.0), None],
+                (Some(Fix::Y), None, None) => [None, Some(0.0)],
+                (Some(Fix::Both), None, None) => [Some(0.0); 2],
+                (None, x, y) if x.is_some() || y.is_some() => [x, y],
+                (None, ..) => {
+                    let message = "a support holds nothing";
+                    return Err(SceneFault::new(path, message, "add `fix = \"both\"`, `velocity_x` or `velocity_y`"));
+                }
+                (Some(_), ..) => {
+                    let message = "both `fix` and a velocity are given";
+                    return Err(SceneFault::new(
+                        path.then("fix"),
+                        message,
+                        "to hold still in one direction give it the velocity 0",
+                    ));
+                }
+            };
+            let selection = self.selection(&path, &keys.select, scene, tolerance)?;
+            Ok(Support { selection, velocity, curve: curve(&keys.curve) })
+        };
+        self.document.support.iter().enumerate().map(each).collect()
+    }
+
+    pub(super) fn initial_velocities(&self, scene: &mut Scene, tolerance: f64) -> Resolved<()> {
+        for (i, keys) in self.document.initial_velocity.iter().enumerate() {
+            let path = KeyPath::item("initial_velocity", i);
+            finite_pair(path.then("velocity"), "the initial velocity", keys.velocity)?;
+            finite_pair(path.then("angular_velocity"), "the rotation", [keys.angular_velocity, 0.0])?;
+            finite_pair(path.then("center"), "the centre of rotation", keys.center)?;
+            let selection = self.selection(&path, &keys.select, scene, tolerance)?;
+            let only = match &selection {
+                Selection::Body(body) | Selection::Edge { body: Some(body), .. } => Some(*body),
+                _ => None,
+            };
+            for (_, body) in scene.bodies.iter_mut().enumerate().filter(|(b, _)| only.is_none_or(|o| o == *b)) {
+                body.velocities.push(InitialVelocity {
+                    selection: selection.clone(),
+                    velocity: Vector::from(keys.velocity),
+                    angular_velocity: keys.angular_velocity,
+                    center: Point::from(keys.center),
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+pub(super) fn curve(list: &[[f64; 2]]) -> Curve {
+    Curve { points: list.iter().map(|&[time, factor]| (time, factor)).collect() }
+}

@@ -1,0 +1,81 @@
+//! Solver, growth, frames and output.
+
+use super::{Resolved, Resolver};
+use crate::document::TimeStep;
+use crate::fault::{KeyPath, SceneFault};
+use crate::presets::{solver_preset, updated_kernel};
+use crate::scene::Material;
+use crate::settings::*;
+
+impl<'d> Resolver<'d> {
+    pub(super) fn solver(&self, materials: &[Material]) -> Resolved<(SolverSettings, GrowthSettings)> {
+        let (keys, growth_keys) = (&self.document.solver, &self.document.growth);
+        let (mut s, mut g) = solver_preset(keys.preset);
+        let flows = materials.iter().any(|m| m.plasticity.is_some());
+        s.formulation = keys.formulation.unwrap_or(s.formulation);
+        let moves_through_grid = s.formulation == Formulation::Updated || (s.formulation == Formulation::Auto && flows);
+        if keys.preset == SolverPreset::Standard && moves_through_grid {
+            s.kernel = updated_kernel();
+        }
+        s.on_distortion = keys.on_distortion.unwrap_or(s.on_distortion);
+        s.kernel = keys.kernel.unwrap_or(s.kernel);
+        s.transfer = keys.transfer.unwrap_or(s.transfer);
+        s.time_step = match keys.time_step {
+            TimeStep::Auto => s.time_step,
+            TimeStep::Seconds(seconds) => Some(seconds),
+        };
+        s.courant = keys.courant.unwrap_or(s.courant);
+        s.damping = keys.damping.unwrap_or(s.damping);
+        s.crack_contact = keys.crack_contact.unwrap_or(s.crack_contact);
+        s.crack_friction = keys.crack_friction.unwrap_or(s.crack_friction);
+        s.tip_division = keys.tip_division.unwrap_or(s.tip_division);
+        s.j_method = keys.j_method.unwrap_or(s.j_method);
+        s.j_radius = keys.j_radius.unwrap_or(s.j_radius);
+        s.area_term = keys.area_term.unwrap_or(s.area_term);
+        s.mode_split = keys.mode_split.unwrap_or(s.mode_split);
+        g.enabled = growth_keys.enabled.unwrap_or(g.enabled);
+        g.increment = growth_keys.increment.unwrap_or(g.increment);
+        g.bending = growth_keys.bending.unwrap_or(g.bending);
+        g.speed_limit = growth_keys.speed_limit.unwrap_or(g.speed_limit);
+        Ok((s, g))
+    }
+
+    pub(super) fn frames(&self) -> Resolved<FrameSettings> {
+        let keys = &self.document.frames;
+        let rate = keys.rate.unwrap_or(24.0);
+        let Some(range) = &keys.range else {
+            let first = keys.first.unwrap_or(1);
+            return Ok(FrameSettings { first, last: keys.last.unwrap_or(first.saturating_add(47)), rate });
+        };
+        let path = KeyPath::setting("frames", "range");
+        if keys.first.is_some() || keys.last.is_some() {
+            let message = format!("both `range = \"{range}\"` and `first` or `last` are given");
+            return Err(SceneFault::new(path, message, "give the range or its ends"));
+        }
+        let ends = range.split_once('-').and_then(|(a, b)| Some((a.trim().parse().ok()?, b.trim().parse().ok()?)));
+        let (first, last) = ends.ok_or_else(|| {
+            SceneFault::new(path, format!("`{range}` is not a range of frames"), "write it as `range = \"1-48\"`")
+        })?;
+        Ok(FrameSettings { first, last, rate })
+    }
+
+    pub(super) fn output(&self, side: f64) -> Resolved<OutputSettings> {
+        let keys = &self.document.output;
+        if keys.formats.is_empty() || keys.parts.is_empty() {
+            let key = if keys.formats.is_empty() { "formats" } else { "parts" };
+            let message = format!("`{key}` is empty: there is nothing to write");
+            return Err(SceneFault::new(
+                KeyPath::setting("output", key),
+                message,
+                "name at least one, or leave it out",
+            ));
+        }
+        Ok(OutputSettings {
+            thickness: keys.thickness.unwrap_or(0.1 * side),
+            formats: keys.formats.clone(),
+            parts: keys.parts.clone(),
+            up: keys.up,
+            smallest_fragment: keys.smallest_fragment,
+        })
+    }
+}

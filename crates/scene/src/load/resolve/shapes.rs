@@ -1,0 +1,125 @@
+//! Shapes and lines of a scene file as regions and polylines.
+
+use super::{Resolved, Resolver};
+use crate::document::{Line, Shape};
+use crate::fault::{KeyPath, SceneFault, show};
+use crate::geometry::{Point, Region, Vector, bounds, polyline_length, signed_area};
+use crate::load::drawing::LoadedDrawing;
+use crate::load::seating::Complaint;
+use crate::outline::{circle_ring, clean_ring, find_crossing, oriented};
+use crate::validate::{enough_corners, finite_pair, finite_points, positive};
+
+impl<'d> Resolver<'d> {
+    pub(super) fn bodies_box(&self) -> Resolved<(Point, Point)> {
+        let mut corners = Vec::new();
+        for (i, body) in self.document.body.iter().enumerate() {
+            let (low, high) = match &body.shape {
+                Shape::Rectangle(r) => (Point::from(r.min), Point::from(r.max)),
+                Shape::Circle(c) => {
+                    let (center, half) = (Point::from(c.center), Vector::new(c.radius, c.radius));
+                    (center - half, center + half)
+                }
+                Shape::Polygon(polygon) => bounds(&points(&polygon.exterior)),
+                Shape::Svg(id) => {
+                    let path = KeyPath::item("body", i).then("shape").then("svg");
+                    let drawing = self.drawing(&path, id)?;
+                    drawing.bounds(id).map_err(at(&path))?
+                }
+            };
+            corners.extend([low, high]);
+        }
+        Ok(bounds(&corners))
+    }
+
+    pub(super) fn drawing(&self, path: &KeyPath, id: &str) -> Resolved<&'d LoadedDrawing> {
+        self.drawing.ok_or_else(|| {
+            let message = format!("`svg = \"{id}\"` needs a drawing, but the scene has none");
+            SceneFault::new(path.clone(), message, "add `[drawing]` with `file = \"...svg\"`")
+        })
+    }
+
+    /// The regions a shape consists of: one, or several for a drawing of separate outlines.
+    pub(super) fn regions(&self, path: &KeyPath, shape: &Shape, tolerance: f64) -> Resolved<Vec<Region>> {
+        match shape {
+            Shape::Rectangle(r) => rectangle(&path.then("rectangle"), r.min, r.max).map(|r| vec![r]),
+            Shape::Circle(c) => {
+                let path = path.then("circle");
+                finite_pair(path.then("center"), "the centre of the circle", c.center)?;
+                positive(path.then("radius"), "the radius of the circle", c.radius)?;
+                Ok(vec![Region {
+                    exterior: circle_ring(Point::from(c.center), c.radius, tolerance),
+                    holes: Vec::new(),
+                }])
+            }
+            Shape::Polygon(polygon) => {
+                let path = path.then("polygon");
+                enough_corners(&path, polygon)?;
+                let ring = |list: &[[f64; 2]], outer: bool| oriented(clean_ring(&points(list), 0.0), outer);
+                Ok(vec![Region {
+                    exterior: ring(&polygon.exterior, true),
+                    holes: polygon.holes.iter().map(|h| ring(h, false)).collect(),
+                }])
+            }
+            Shape::Svg(id) => {
+                let path = path.then("svg");
+                self.drawing(&path, id)?.regions(id, tolerance).map_err(at(&path))
+            }
+        }
+    }
+
+    pub(super) fn line(&self, path: &KeyPath, line: &Line, tolerance: f64) -> Resolved<Vec<Point>> {
+        let points = match line {
+            Line::Points(list) => points(list),
+            Line::Svg(id) => {
+                let path = path.then("svg");
+                self.drawing(&path, id)?.line(id, tolerance).map_err(at(&path))?
+            }
+        };
+        finite_points(path, "a point of the line", &points)?;
+        if points.len() < 2 || polyline_length(&points) == 0.0 {
+            let message = match points.first() {
+                Some(&p) => format!("the line has zero length, it lies at {} m", show(p)),
+                None => "the line has no points".to_owned(),
+            };
+            return Err(SceneFault::new(path.clone(), message, "give it at least two different points"));
+        }
+        if let Some(at) = find_crossing(&[&points], false) {
+            let message = format!("the line crosses itself at {} m", show(at));
+            return Err(SceneFault::new(path.clone(), message, "draw it without a loop"));
+        }
+        Ok(points)
+    }
+}
+
+pub(super) fn at(path: &KeyPath) -> impl Fn(Complaint) -> SceneFault + use<'_> {
+    move |(message, remedy)| SceneFault::new(path.clone(), message, remedy)
+}
+
+pub(super) fn points(list: &[[f64; 2]]) -> Vec<Point> {
+    list.iter().map(|&p| Point::from(p)).collect()
+}
+
+pub(super) fn rectangle(path: &KeyPath, min: [f64; 2], max: [f64; 2]) -> Resolved<Region> {
+    finite_pair(path.then("min"), "`min`", min)?;
+    finite_pair(path.then("max"), "`max`", max)?;
+    if min[0] >= max[0] || min[1] >= max[1] {
+        let message = format!("min = {min:?} is not below and left of max = {max:?}");
+        return Err(SceneFault::new(path.clone(), message, "min is the lower left corner, max the upper right one"));
+    }
+    let exterior = vec![min, [max[0], min[1]], max, [min[0], max[1]]].into_iter().map(Point::from).collect();
+    Ok(Region { exterior, holes: Vec::new() })
+}
+
+/// Centre of area of a region.
+pub(super) fn center_of_area(region: &Region) -> Point {
+    let Some(&origin) = region.exterior.first() else { return Point::origin() };
+    let mut moment = Vector::zeros();
+    for ring in region.rings() {
+        for i in 0..ring.len() {
+            let (p, q) = (ring[i] - origin, ring[(i + 1) % ring.len()] - origin);
+            moment += (p + q) * ((p.x * q.y - q.x * p.y) / 6.0);
+        }
+    }
+    let area: f64 = region.rings().map(signed_area).sum();
+    origin + moment / area
+}

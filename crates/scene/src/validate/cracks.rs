@@ -1,0 +1,159 @@
+//! Cracks and guides.
+
+use super::region::is_on;
+use super::{Check, finite_points, unique_name};
+use crate::fault::{KeyPath, SceneFault, show};
+use crate::geometry::{Point, Region, orientation, polyline_length, segments_touch};
+use crate::outline::{find_crossing, nearest_on_rings, nearest_on_segment};
+use crate::scene::{Body, Crack, Scene};
+
+impl Scene {
+    pub(super) fn validate_cracks(&self) -> Check {
+        for (i, crack) in self.cracks.iter().enumerate() {
+            let path = KeyPath::item("crack", i);
+            unique_name(&path, "crack", &crack.name, self.cracks[..i].iter().map(|c| c.name.as_str()))?;
+            let Some(body) = self.bodies.get(crack.body) else {
+                let remedy = format!("there are {}, numbered from 0", self.bodies.len());
+                return Err(SceneFault::new(
+                    path.then("body"),
+                    format!("crack `{}` has body number {}", crack.name, crack.body),
+                    remedy,
+                ));
+            };
+            self.validate_crack(&path, crack, body)?;
+            for other in &self.cracks[..i] {
+                if let Some(at) = meeting(&crack.points, &other.points) {
+                    let message = format!("crack `{}` meets crack `{}` at {} m", crack.name, other.name, show(at));
+                    return Err(SceneFault::new(
+                        path.then("line"),
+                        message,
+                        "keep the cracks apart, if only by a cell",
+                    ));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn validate_crack(&self, path: &KeyPath, crack: &Crack, body: &Body) -> Check {
+        let name = &crack.name;
+        let line = path.then("line");
+        validate_polyline(&line, &format!("crack `{name}`"), &crack.points)?;
+        let on_ring =
+            |p: Point| nearest_on_rings(&body.region, p).is_some_and(|place| is_on(&body.region, place.distance));
+        let [first, .., last] = crack.points.as_slice() else { return Ok(()) };
+        for (end, point, live, guide) in
+            [("start", *first, crack.start_live, &crack.start_guide), ("end", *last, crack.end_live, &crack.end_guide)]
+        {
+            if !body.region.contains(point) && !on_ring(point) {
+                let message =
+                    format!("the {end} {} m of crack `{name}` lies outside body `{}`", show(point), body.name);
+                return Err(SceneFault::new(line, message, "move it into the body or onto its outline"));
+            }
+            if live && on_ring(point) {
+                return Err(live_mouth(path, name, end, point));
+            }
+            let Some(guide) = guide else { continue };
+            let key = path.then(format!("guide_{end}").as_str());
+            if !live {
+                let message = format!("guide `{}` leads the {end} of crack `{name}`, which is no live tip", guide.name);
+                return Err(SceneFault::new(key, message, "name that end in `tips`, or take the guide away"));
+            }
+            validate_polyline(&key, &format!("guide `{}`", guide.name), &guide.points)?;
+            if guide.points.first() != Some(&point) {
+                let message =
+                    format!("guide `{}` does not start at the {end} {} m of crack `{name}`", guide.name, show(point));
+                return Err(SceneFault::new(key, message, "make its first point the tip"));
+            }
+        }
+        if let Some(at) = leaves(&body.region, &crack.points) {
+            let message = format!("crack `{name}` leaves body `{}` at {} m", body.name, show(at));
+            return Err(SceneFault::new(
+                line,
+                message,
+                "only its ends may reach the outline; draw a crack for each part",
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// The fault of naming an end live that lies on the outline.
+pub(crate) fn live_mouth(path: &KeyPath, crack: &str, end: &str, at: Point) -> SceneFault {
+    SceneFault::new(
+        path.then("tips"),
+        format!("the {end} of crack `{crack}` is named live, but it lies on the outline at {} m", show(at)),
+        "name the other end, or leave `tips` out: ends inside the body are then live",
+    )
+}
+
+/// A polyline has length, and does not cross itself.
+pub(super) fn validate_polyline(path: &KeyPath, what: &str, points: &[Point]) -> Check {
+    finite_points(path, what, points)?;
+    if points.len() < 2 || polyline_length(points) == 0.0 {
+        let at = points.first().map_or_else(|| "it has no points".to_owned(), |&p| format!("it lies at {} m", show(p)));
+        return Err(SceneFault::new(
+            path.clone(),
+            format!("{what} has no length: {at}"),
+            "give it at least two different points",
+        ));
+    }
+    if let Some(twice) = points.windows(2).find(|w| w[0] == w[1]) {
+        return Err(SceneFault::new(
+            path.clone(),
+            format!("{what} has the point {} twice in a row", show(twice[0])),
+            "take one away",
+        ));
+    }
+    if let Some(at) = find_crossing(&[points], false) {
+        return Err(SceneFault::new(
+            path.clone(),
+            format!("{what} crosses itself at {} m", show(at)),
+            "draw it without a loop",
+        ));
+    }
+    Ok(())
+}
+
+/// Where a crack touches the rings of its body other than with its two ends.
+pub(crate) fn leaves(region: &Region, points: &[Point]) -> Option<Point> {
+    let (first, last) = (points.first()?, points.last()?);
+    for (i, w) in points.windows(2).enumerate() {
+        let (p, q) = (w[0], w[1]);
+        for ring in region.rings() {
+            for k in 0..ring.len() {
+                let (a, b) = (ring[k], ring[(k + 1) % ring.len()]);
+                if !segments_touch(p, q, a, b) {
+                    continue;
+                }
+                let along = |from: Point, to: Point, from_ring: Point, other: Point| {
+                    from == from_ring && orientation(from, to, other) == 0.0 && (to - from).dot(&(other - from)) > 0.0
+                };
+                let joins = |end: Point, inner: Point, is_end: bool| {
+                    // The mouth itself, unless the crack runs on along the ring.
+                    is_end && {
+                        let touches_elsewhere = segments_touch(inner, inner, a, b);
+                        let place = nearest_on_segment(a, b, end);
+                        is_on(region, (place - end).norm())
+                            && !touches_elsewhere
+                            && !along(end, inner, a, b)
+                            && !along(end, inner, b, a)
+                    }
+                };
+                let starts = joins(p, q, i == 0 && p == *first);
+                let ends = joins(q, p, i + 2 == points.len() && q == *last);
+                if !(starts || ends) {
+                    return Some(nearest_on_segment(a, b, p));
+                }
+            }
+        }
+    }
+    let middle = nalgebra::center(&points[0], &points[1]);
+    (!region.contains(middle)).then_some(*first)
+}
+
+pub(super) fn meeting(a: &[Point], b: &[Point]) -> Option<Point> {
+    a.windows(2).find_map(|v| {
+        b.windows(2).find(|w| segments_touch(v[0], v[1], w[0], w[1])).map(|w| nearest_on_segment(w[0], w[1], v[1]))
+    })
+}

@@ -1,0 +1,125 @@
+//! Loads, supports, selections and colliders.
+
+use super::{Check, FINITE, FRICTION, POSITIVE, finite_pair, finite_points, validate_region};
+use crate::fault::{KeyPath, SceneFault};
+use crate::geometry::Region;
+use crate::scene::*;
+
+impl Scene {
+    pub(super) fn validate_load(&self, path: &KeyPath, load: &Load) -> Check {
+        self.validate_selection(path, &load.selection)?;
+        validate_curve(path, &load.curve)?;
+        match &load.kind {
+            LoadKind::Force(f) => finite_pair(path.then("force"), "the force", [f.x, f.y]),
+            LoadKind::Traction(t) => {
+                finite_pair(path.then("traction"), "the traction", [t.x, t.y])?;
+                if matches!(load.selection, Selection::Edge { .. }) {
+                    return Ok(());
+                }
+                let message = "a traction acts on an edge, but none is selected";
+                Err(SceneFault::new(
+                    path.then("traction"),
+                    message,
+                    "add `select = { edge = \"...\" }` or give a `force`",
+                ))
+            }
+            LoadKind::PerPoint(forces) => forces.iter().try_for_each(|(at, f)| {
+                finite_pair(path.then("per_point"), "the place of a force", [at.x, at.y])?;
+                finite_pair(path.then("per_point"), "a force", [f.x, f.y])
+            }),
+        }
+    }
+
+    pub(super) fn validate_support(&self, path: &KeyPath, support: &Support) -> Check {
+        self.validate_selection(path, &support.selection)?;
+        validate_curve(path, &support.curve)?;
+        for (key, v) in ["velocity_x", "velocity_y"].into_iter().zip(support.velocity) {
+            FINITE.check(path.then(key), "the velocity of a support", v.unwrap_or(0.0))?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn validate_selection(&self, path: &KeyPath, selection: &Selection) -> Check {
+        let path = path.then("select");
+        let body_exists = |body: usize| {
+            if body < self.bodies.len() {
+                return Ok(());
+            }
+            let remedy = format!("there are {}, numbered from 0", self.bodies.len());
+            Err(SceneFault::new(path.then("body"), format!("body number {body} is selected"), remedy))
+        };
+        match selection {
+            Selection::All | Selection::Edge { body: None, .. } => Ok(()),
+            Selection::Body(body) | Selection::Edge { body: Some(body), .. } => body_exists(*body),
+            Selection::Region(region) => validate_region(&path.then("region"), "the selected region", region),
+            Selection::Near { points, radius } => {
+                finite_points(&path.then("near"), "a point", points)?;
+                POSITIVE.check(path.then("radius"), "the radius", *radius)
+            }
+        }
+    }
+}
+
+pub(super) fn validate_collider(path: &KeyPath, collider: &Collider) -> Check {
+    let name = &collider.name;
+    FRICTION.check(path.then("friction"), &format!("the friction of collider `{name}`"), collider.friction)?;
+    let shape = path.then("shape");
+    match &collider.shape {
+        ColliderShape::HalfPlane { normal } => {
+            if (normal.norm() - 1.0).abs() > 1e-9 || !normal.norm().is_finite() {
+                let message = format!("the normal of collider `{name}` is ({}, {})", normal.x, normal.y);
+                return Err(SceneFault::new(shape, message, "it must have a length above 0 and be finite"));
+            }
+        }
+        ColliderShape::Disc { radius } => {
+            POSITIVE.check(shape, &format!("the radius of collider `{name}`"), *radius)?
+        }
+        ColliderShape::Box { half_extents } => {
+            for (side, v) in [("width", half_extents.x), ("height", half_extents.y)] {
+                POSITIVE.check(shape.clone(), &format!("half the {side} of collider `{name}`"), v)?;
+            }
+        }
+        ColliderShape::Polygon { ring } => {
+            let region = Region { exterior: ring.clone(), holes: Vec::new() };
+            validate_region(&shape, &format!("the outline of collider `{name}`"), &region)?;
+        }
+    }
+    let path = path.then("keyframes");
+    if collider.keyframes.is_empty() {
+        return Err(SceneFault::new(path, format!("collider `{name}` has no pose"), "give it one keyframe at least"));
+    }
+    for (i, (time, pose)) in collider.keyframes.iter().enumerate() {
+        let path = path.then(i);
+        FINITE.check(path.then("time"), "the time of a keyframe", *time)?;
+        finite_pair(path.then("position"), "the position of a keyframe", [pose.position.x, pose.position.y])?;
+        FINITE.check(path.then("angle"), "the angle of a keyframe", pose.angle)?;
+        if i > 0 && collider.keyframes[i - 1].0 >= *time {
+            return Err(not_rising(
+                path,
+                &format!("the keyframes of collider `{name}`"),
+                collider.keyframes[i - 1].0,
+                *time,
+            ));
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn validate_curve(path: &KeyPath, curve: &Curve) -> Check {
+    let path = path.then("curve");
+    for (i, &(time, factor)) in curve.points.iter().enumerate() {
+        finite_pair(path.then(i), "a point of the curve", [time, factor])?;
+        if i > 0 && curve.points[i - 1].0 >= time {
+            return Err(not_rising(path.then(i), "the points of the curve", curve.points[i - 1].0, time));
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn not_rising(path: KeyPath, what: &str, before: f64, after: f64) -> SceneFault {
+    SceneFault::new(
+        path,
+        format!("the times of {what} do not rise: {after} s comes after {before} s"),
+        "sort them by time, each time once",
+    )
+}

@@ -1,0 +1,56 @@
+//! Outlines of bodies, colliders and selections.
+
+use super::{Check, finite_points};
+use crate::fault::{KeyPath, SceneFault, show};
+use crate::geometry::{Point, Region, bounds, orientation, signed_area};
+use crate::outline::find_crossing;
+
+/// A region is finite, simple, oriented, and its holes lie inside and apart.
+pub(crate) fn validate_region(path: &KeyPath, what: &str, region: &Region) -> Check {
+    let fault = |message: String, remedy: &str| Err(SceneFault::new(path.clone(), message, remedy));
+    for ring in region.rings() {
+        finite_points(path, what, ring)?;
+        if ring.windows(3).all(|w| orientation(w[0], w[1], w[2]) == 0.0) {
+            return fault(
+                format!("{what} encloses no area ({} different corners)", ring.len()),
+                "give it at least three corners, not on one line",
+            );
+        }
+    }
+    let rings: Vec<&[Point]> = region.rings().collect();
+    if let Some(at) = find_crossing(&rings, true) {
+        return fault(
+            format!("{what} crosses or touches itself at {} m", show(at)),
+            "draw each ring without crossings, and holes apart from each other and from the edge",
+        );
+    }
+    if signed_area(&region.exterior) < 0.0 || region.holes.iter().any(|h| signed_area(h) > 0.0) {
+        return fault(format!("{what} turns the wrong way"), "exteriors run counter-clockwise, holes clockwise");
+    }
+    let simple = |ring: &[Point]| Region { exterior: ring.to_vec(), holes: Vec::new() };
+    let exterior = simple(&region.exterior);
+    for (i, hole) in region.holes.iter().enumerate() {
+        let inside_other = region.holes[..i].iter().any(|o| {
+            let reverse = |r: &[Point]| r.iter().rev().copied().collect::<Vec<_>>();
+            simple(&reverse(o)).contains(hole[0]) || simple(&reverse(hole)).contains(o[0])
+        });
+        if !exterior.contains(hole[0]) || inside_other {
+            return fault(
+                format!("a hole of {what} at {} m does not lie inside it", show(hole[0])),
+                "holes lie inside the outline and not inside each other",
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Whether a distance from a ring is rounding only.
+pub(super) fn is_on(region: &Region, distance: f64) -> bool {
+    let (low, high) = bounds(&region.exterior);
+    distance <= 1e-12 * (low.coords.amax().max(high.coords.amax()))
+}
+
+pub(super) fn polygon(region: &Region) -> geo::Polygon<f64> {
+    let ring = |points: &[Point]| geo::LineString::from_iter(points.iter().map(|p| (p.x, p.y)));
+    geo::Polygon::new(ring(&region.exterior), region.holes.iter().map(|h| ring(h)).collect())
+}
