@@ -103,3 +103,25 @@ pub fn segments_touch(a: Point, b: Point, c: Point, d: Point) -> bool {
     let straddles = |s: f64, t: f64| (s <= 0.0 && t >= 0.0) || (s >= 0.0 && t <= 0.0);
     straddles(abc, abd) && straddles(cda, cdb)
 }
+
+/// The point of a segment nearest to `point`; an end point to the bit when that is nearest.
+pub fn nearest_on_segment(a: Point, b: Point, point: Point) -> Point {
+    let along = b - a;
+    let t = (point - a).dot(&along) / along.norm_squared();
+    if t.is_nan() || t <= 0.0 {
+        a
+    } else if t >= 1.0 {
+        b
+    } else {
+        a + along * t
+    }
+}
+
+/// Distance of the closed segments `a`–`b` and `c`–`d` [m]; exactly 0 when they share a point.
+pub fn segment_distance(a: Point, b: Point, c: Point, d: Point) -> f64 {
+    if segments_touch(a, b, c, d) {
+        return 0.0;
+    }
+    let to = |p: Point, q: Point, point: Point| (nearest_on_segment(p, q, point) - point).norm();
+    to(a, b, c).min(to(a, b, d)).min(to(c, d, a)).min(to(c, d, b))
+}

@@ -1,6 +1,6 @@
 //! Rings: orientation, crossings, nesting, and the nearest place on them. Signs are exact.
 
-use crate::geometry::{Point, Region, orientation, segments_touch, signed_area};
+use crate::geometry::{Point, Region, nearest_on_segment, orientation, segments_touch, signed_area};
 
 /// Takes off what repeats: points closer than `tolerance` to the one before, and a last point that repeats the first.
 pub(crate) fn clean_ring(points: &[Point], tolerance: f64) -> Vec<Point> {
@@ -163,19 +163,6 @@ pub(crate) fn nearest_on_rings(region: &Region, point: Point) -> Option<RingPlac
         }
     }
     best
-}
-
-/// The point of a segment nearest to `point`; an end point to the bit when that is nearest.
-pub(crate) fn nearest_on_segment(a: Point, b: Point, point: Point) -> Point {
-    let along = b - a;
-    let t = (point - a).dot(&along) / along.norm_squared();
-    if t.is_nan() || t <= 0.0 {
-        a
-    } else if t >= 1.0 {
-        b
-    } else {
-        a + along * t
-    }
 }
 
 /// Makes `place` a corner of its ring, unless it is one already; the corner is `place.point` to the bit.

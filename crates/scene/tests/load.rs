@@ -1,37 +1,14 @@
 //! Scenes as users write them: what loads, and what each mistake is told.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod common;
+
+use common::{Folder, PLATE, scene_with};
 use fissure_scene::{
     BoxSide, ColliderShape, Kernel, LoadErrorKind, LoadKind, Point, Scene, Selection, SolverPreset, Transfer, load,
     schema, solver_preset, template,
 };
 use std::path::PathBuf;
-use tempfile::TempDir;
-
-/// A folder with a scene and, if given, a drawing beside it.
-struct Folder(TempDir);
-
-impl Folder {
-    fn new(scene: &str, drawing: Option<&str>) -> Self {
-        let folder = Self(tempfile::tempdir().unwrap());
-        std::fs::write(folder.path(), scene).unwrap();
-        if let Some(svg) = drawing {
-            std::fs::write(folder.0.path().join("drawing.svg"), svg).unwrap();
-        }
-        folder
-    }
-    fn path(&self) -> PathBuf {
-        self.0.path().join("scene.toml")
-    }
-}
-
-fn scene_with(text: &str, drawing: Option<&str>, set: &[&str]) -> Result<Scene, fissure_scene::LoadError> {
-    let folder = Folder::new(text, drawing);
-    load(&folder.path(), &set.iter().map(|s| s.to_string()).collect::<Vec<_>>())
-}
-
-const PLATE: &str =
-    "[[body]]\nname = 'plate'\nmaterial = 'pmma'\nshape = { rectangle = { min = [-10, -10], max = [10, 10] } }\n";
 
 #[test]
 fn the_template_loads() {
@@ -44,6 +21,30 @@ fn the_template_loads() {
     assert!(scene.bodies[0].region.exterior.contains(&scene.cracks[0].points[0]));
     assert_eq!(scene.loads[0].selection, Selection::Edge { side: BoxSide::Top, body: None });
     assert_eq!(scene.hash.len(), 64);
+}
+
+/// Truth: what the comments of the template offer can be taken out of them.
+#[test]
+fn the_templates_comments_load() {
+    let open = |block: &str| {
+        let all_comment = block.lines().all(|line| line.starts_with("# "));
+        let offered = ["# [[region]]", "# [[toughness]]", "# [[guide]]", "# [[flaws]]"]
+            .iter()
+            .any(|head| block.starts_with(head));
+        assert_eq!(offered, all_comment && block.starts_with("# [["), "{block}");
+        if offered { block.lines().map(|line| &line[2..]).collect::<Vec<_>>().join("\n") } else { block.to_owned() }
+    };
+    let text = template().split("\n\n").map(open).collect::<Vec<_>>().join("\n\n");
+    let text = ["# guide =", "# branching =", "# speed_keyframes ="].iter().fold(text, |text, key| {
+        assert!(text.contains(key), "{key}");
+        text.replace(key, &key[2..])
+    });
+    let folder = Folder::new(&text, None);
+    image::GrayImage::new(4, 4).save(folder.file("toughness.png")).unwrap();
+    let scene = load(&folder.path(), &[]).unwrap();
+    assert_eq!((scene.bodies[0].inclusions.len(), scene.toughness.len(), scene.cracks.len()), (1, 1, 21));
+    assert_eq!(scene.cracks[0].end_guide.as_ref().unwrap().schedule.points.len(), 2);
+    assert!(scene.growth.branching.is_some() && scene.growth.speed_curve.points.len() == 2);
 }
 
 #[test]
@@ -214,6 +215,43 @@ fn every_mistake_is_told_with_line_value_and_remedy() {
         (plate(&format!("{LINE}guide = 'pth'\n[[guide]]\nname = 'path'\nline = [[-5, 0], [10, 0]]\n")), "", Scene, Some(8), &["`pth`", "did you mean `path`?"]),
         (guide("[[-3, 0], [10, 0]]"), "", Scene, Some(11), &["does not start at the tip", "(-5, 0)", "2 m away"]),
         (guide("[[-10, 5], [-5, 0], [10, 0]]"), "", Scene, Some(11), &["leaves the crack"]),
+        (guide("[[-5, 0], [10, 0]]\nstrength = 1.5"), "", Scene, Some(12), &["strength", "`path`", "1.5", "0 to 1"]),
+        (guide("[[-5, 0], [10, 0]]\nkeyframes = [[1, 0], [1, 1]]"), "", Scene, Some(12), &["frames", "`path`", "1 comes after 1", "each frame once"]),
+        (guide("[[-5, 0], [10, 0]]\nkeyframes = [[1, 0.5], [2, 0.25]]"), "", Scene, Some(12), &["goes back", "0.25", "0.5"]),
+        (guide("[[-5, 0], [10, 0]]\nkeyframes = [[1, 0], [2, 1.25]]"), "", Scene, Some(12), &["fraction", "1.25", "0 to 1"]),
+        (guide("[[-5, 0], [10, 0]]\nkeyframe = [[1, 0]]"), "", Scene, Some(12), &["`keyframe`", "did you mean `keyframes`?"]),
+        (plate("[growth]\nspeed_keyframes = [[1, 1], [2, -1]]\n"), "", Scene, Some(6), &["speed limit", "-1", "at least 0"]),
+        (plate("[growth]\nspeed_limit = 0.5\nspeed_keyframes = [[1, 1], [2, 3]]\n"), "", Scene, Some(7), &["3", "1.5 Rayleigh", "at most 2"]),
+        (plate("[growth]\nspeed_keyframes = [[2, 1], [1, 1]]\n"), "", Scene, Some(6), &["frames", "1 comes after 2"]),
+        (plate("[growth]\nbranching = 'yes'\n"), "", Scene, Some(6), &["growth.branching", "true, false or a table"]),
+        (plate("[growth]\nbranching = { release_rate = 3 }\n"), "", Scene, Some(6), &["unknown key `release_rate`", "did you mean `release_ratio`?"]),
+        (plate("[growth.branching]\nrelease_ratio = 1\n"), "", Scene, Some(6), &["release_ratio", "1", "above 1"]),
+        (plate("[growth.branching]\nhalf_angle = 95\n"), "", Scene, Some(6), &["half_angle", "95", "below 90"]),
+        (plate("[growth.branching]\nspacing = 0\n"), "", Scene, Some(6), &["spacing", "0", "above 0"]),
+        (plate("[[material]]\nname = 'pmma'\nlimiting_speed = 0\n"), "", Scene, Some(7), &["speed", "`pmma`", "0", "above 0"]),
+        (plate("[[region]]\nmaterial = 'glas'\nshape = { circle = { radius = 1 } }\n"), "", Scene, Some(6), &["`glas`", "did you mean `glass`?"]),
+        (plate("[[region]]\nbody = 'plat'\nmaterial = 'glass'\nshape = { circle = { radius = 1 } }\n"), "", Scene, Some(6), &["`plat`", "did you mean `plate`?"]),
+        (plate("[[region]]\nmaterial = 'glass'\nshape = { circle = { center = [30, 0], radius = 1 } }\n"), "", Scene, Some(7), &["does not overlap any body", "move"]),
+        (plate("[[region]]\nmaterial = 'glass'\nshape = { polygon = [[0, 0], [2, 2], [2, 0], [0, 2]] }\n"), "", Scene, Some(7), &["region", "crosses", "(1, 1)"]),
+        (plate("[[toughness]]\nfactor = 2\n"), "", Scene, Some(5), &["neither `shape` nor `image`"]),
+        (plate("[[toughness]]\nshape = { circle = { radius = 1 } }\n"), "", Scene, Some(5), &["lacks its factor"]),
+        (plate("[[toughness]]\nshape = { circle = { radius = 1 } }\nfactor = 0\n"), "", Scene, Some(7), &["factor", "0", "above 0"]),
+        (plate("[[toughness]]\nshape = { circle = { radius = 1 } }\nfactor = 2\nblack = 1\n"), "", Scene, Some(8), &["`black` belongs to an `image`"]),
+        (plate("[[toughness]]\nshape = { circle = { center = [0, 30], radius = 1 } }\nfactor = 2\n"), "", Scene, Some(6), &["does not overlap"]),
+        (plate("[[flaws]]\nlength = 1\n"), "", Scene, Some(5), &["exactly one", "`density`", "`count`"]),
+        (plate("[[flaws]]\nlength = 1\ncount = 2\ndensity = 1\n"), "", Scene, Some(7), &["exactly one"]),
+        (plate("[[flaws]]\ncount = 2\n"), "", Scene, Some(5), &["lacks the key `length`"]),
+        (plate("[[flaws]]\nlength = -1\ncount = 2\n"), "", Scene, Some(6), &["length", "-1", "above 0"]),
+        (plate("[[flaws]]\nlength = 1\nlength_spread = 1\ncount = 2\n"), "", Scene, Some(7), &["spread", "below 1"]),
+        (plate("[[flaws]]\nlength = 1\ncount = 2\nmargin = 0\n"), "", Scene, Some(8), &["margin", "0", "above 0"]),
+        (plate("[[flaws]]\nlength = 1\ncount = -2\n"), "", Scene, Some(7), &["flaws[0].count", "-2"]),
+        (plate("[[flaws]]\nlength = 1\ndensity = 1e-4\n"), "", Scene, Some(7), &["no flaw", "400 m²", "0.0025"]),
+        (plate("[[flaws]]\nlength = 1\ndensity = 1e9\n"), "", Scene, Some(7), &["400000000000 flaws", "at most 10000"]),
+        (plate("[[flaws]]\nlength = 5\ncount = 500\n"), "", Scene, Some(7), &["of 500 flaws fit", "at most `count = ", "`margin` (0.625 m)"]),
+        (plate("[[flaws]]\nlength = 30\ndensity = 0.1\n"), "", Scene, Some(7), &["only 0 of 40", "make `length` (30 m)"]),
+        (plate("[[flaws]]\nlength = 1\ncount = 2\nshape = { circle = { center = [30, 0], radius = 1 } }\n"), "", Scene, Some(8), &["no body reaches"]),
+        (plate("[[flaws]]\nlength = 1\ncount = 2\n[[crack]]\nname = 'flaws-1.2'\nline = [[-10, 0], [-5, 0]]\n"), "", Scene, Some(5), &["two", "`flaws-1.2`"]),
+        (plate("[[flaws]]\nlength = 1\ncount = 2\nlive = 'both'\n"), "", Scene, Some(8), &["unknown key `live`"]),
     ];
     let mut wrong = Vec::new();
     for (text, set, kind, line, words) in cases {

@@ -1,10 +1,10 @@
 //! Resolution, solver, growth, frames and output of a scene file.
 
+use super::Switch;
 use crate::scene::Plasticity;
 use crate::settings::*;
 use schemars::JsonSchema;
-use serde::de::value::MapAccessDeserializer;
-use serde::de::{MapAccess, Visitor};
+use serde::de::Visitor;
 use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 
@@ -111,6 +111,22 @@ pub struct GrowthKeys {
     pub bending: Option<f64>,
     /// Highest speed of a tip as a fraction of the Rayleigh wave speed, above 0 up to 1.
     pub speed_limit: Option<f64>,
+    /// Factor on `speed_limit` over time: [[frame, factor], ...] with rising frames, linear between; 0 holds all tips.
+    pub speed_keyframes: Vec<[f64; 2]>,
+    /// Whether tips divide into two. `false` (default), `true`, or values.
+    pub branching: Option<Switch<BranchingKeys>>,
+}
+
+/// When a tip divides into two, and how.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct BranchingKeys {
+    /// A tip divides when its energy release rate is this many times what one tip needs, above 1. Default: 2.
+    pub release_ratio: Option<f64>,
+    /// Angle in degrees between each new tip and the old direction, above 0 and below 90. Default: 27.
+    pub half_angle: Option<f64>,
+    /// Least length of crack in m between two divisions. Default: 12 cells.
+    pub spacing: Option<f64>,
 }
 
 /// Which frames to compute. The first one is the state at rest, time 0.
@@ -155,16 +171,6 @@ impl Default for OutputKeys {
     }
 }
 
-/// Plasticity of a material.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
-#[serde(untagged)]
-pub enum PlasticityKeys {
-    /// `false`: elastic; `true`: the values of snow.
-    Switch(bool),
-    /// Its values.
-    Values(PlasticityValues),
-}
-
 /// Values of snow plasticity (Stomakhin et al. 2013); each defaults to that of snow.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -177,36 +183,13 @@ pub struct PlasticityValues {
     pub hardening: Option<f64>,
 }
 
-impl PlasticityKeys {
+impl PlasticityValues {
     /// The plasticity meant, with `snow`'s values where none are given.
-    pub fn resolve(self, snow: Plasticity) -> Option<Plasticity> {
-        match self {
-            Self::Switch(false) => None,
-            Self::Switch(true) => Some(snow),
-            Self::Values(values) => Some(Plasticity {
-                critical_compression: values.critical_compression.unwrap_or(snow.critical_compression),
-                critical_stretch: values.critical_stretch.unwrap_or(snow.critical_stretch),
-                hardening: values.hardening.unwrap_or(snow.hardening),
-            }),
+    pub fn resolve(self, snow: Plasticity) -> Plasticity {
+        Plasticity {
+            critical_compression: self.critical_compression.unwrap_or(snow.critical_compression),
+            critical_stretch: self.critical_stretch.unwrap_or(snow.critical_stretch),
+            hardening: self.hardening.unwrap_or(snow.hardening),
         }
-    }
-}
-
-impl<'de> Deserialize<'de> for PlasticityKeys {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct PlasticityVisitor;
-        impl<'de> Visitor<'de> for PlasticityVisitor {
-            type Value = PlasticityKeys;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("true, false or { critical_compression, critical_stretch, hardening }")
-            }
-            fn visit_bool<E>(self, on: bool) -> Result<PlasticityKeys, E> {
-                Ok(PlasticityKeys::Switch(on))
-            }
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<PlasticityKeys, A::Error> {
-                PlasticityValues::deserialize(MapAccessDeserializer::new(map)).map(PlasticityKeys::Values)
-            }
-        }
-        deserializer.deserialize_any(PlasticityVisitor)
     }
 }

@@ -3,7 +3,9 @@
 mod drawing;
 mod error;
 mod overrides;
+mod picture;
 mod resolve;
+mod scatter;
 mod seating;
 mod source;
 mod template;
@@ -11,9 +13,10 @@ mod template;
 pub use error::{LoadError, LoadErrorKind};
 pub use template::template;
 
-use crate::document::Document;
+use crate::document::{Document, ToughnessKeys};
 use crate::scene::Scene;
 use drawing::LoadedDrawing;
+use picture::Picture;
 use resolve::Resolver;
 use sha2::{Digest, Sha256};
 use source::SceneSource;
@@ -32,9 +35,11 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, LoadError> {
         Some(drawing) => Some(LoadedDrawing::read(drawing, folder, |fault| LoadError::fault(&source, fault))?),
         None => None,
     };
-    let resolver = Resolver::new(&document, drawing.as_ref(), default_name(path));
+    let picture = |keys: &ToughnessKeys| keys.image.as_ref().map(|file| Picture::read(&folder.join(file))).transpose();
+    let pictures = document.toughness.iter().map(picture).collect::<Result<Vec<_>, _>>()?;
+    let resolver = Resolver::new(&document, drawing.as_ref(), &pictures, default_name(path));
     let mut scene = resolver.scene().map_err(|fault| LoadError::fault(&source, fault))?;
-    scene.hash = hash(&source, drawing.as_ref());
+    scene.hash = hash(&source, drawing.as_ref(), &pictures);
     Ok(scene)
 }
 
@@ -54,8 +59,8 @@ fn default_name(path: &Path) -> String {
     folder.unwrap_or(stem)
 }
 
-/// SHA-256 over the scene file, the overrides, the drawing and its font, each with its length in front.
-fn hash(source: &SceneSource, drawing: Option<&LoadedDrawing>) -> String {
+/// SHA-256 over the scene file, the overrides, the drawing and its font, and the images, each with its length in front.
+fn hash(source: &SceneSource, drawing: Option<&LoadedDrawing>, pictures: &[Option<Picture>]) -> String {
     let mut sha = Sha256::new();
     let mut add = |part: &[u8]| {
         sha.update((part.len() as u64).to_le_bytes());
@@ -64,5 +69,6 @@ fn hash(source: &SceneSource, drawing: Option<&LoadedDrawing>) -> String {
     add(source.text.as_bytes());
     source.override_arguments().for_each(|argument| add(argument.as_bytes()));
     drawing.iter().flat_map(|d| &d.bytes).for_each(|bytes| add(bytes));
+    pictures.iter().flatten().for_each(|picture| add(&picture.bytes));
     sha.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }

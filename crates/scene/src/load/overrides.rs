@@ -1,7 +1,7 @@
 //! Overrides from the command line: `--set solver.preset=thesis`.
 
 use crate::fault::{Key, KeyPath, nearest};
-use crate::presets::material_presets;
+use crate::materials::material_presets;
 use toml::{Table, Value};
 
 /// One override: a path of keys and a value.
@@ -55,7 +55,19 @@ impl Override {
 
 /// What stands under a top-level key that the file does not have.
 fn empty(key: &str) -> Value {
-    const ARRAYS: [&str; 8] = ["material", "body", "crack", "guide", "collider", "load", "support", "initial_velocity"];
+    const ARRAYS: [&str; 11] = [
+        "material",
+        "body",
+        "region",
+        "toughness",
+        "crack",
+        "flaws",
+        "guide",
+        "collider",
+        "load",
+        "support",
+        "initial_velocity",
+    ];
     if ARRAYS.contains(&key) { Value::Array(Vec::new()) } else { Value::Table(Table::new()) }
 }
 

@@ -1,8 +1,8 @@
 //! Seats cracks in their bodies, and guides on crack tips.
 
 use crate::fault::{short, show};
-use crate::geometry::{Point, Region};
-use crate::outline::{RingPlace, insert_corner, nearest_on_rings, nearest_on_segment};
+use crate::geometry::{Point, Region, nearest_on_segment};
+use crate::outline::{RingPlace, insert_corner, nearest_on_rings};
 
 /// What is wrong, and the remedy.
 pub(crate) type Complaint = (String, String);

@@ -1,10 +1,11 @@
 //! Cracks and guides.
 
+use super::curve::{Clock, validate_schedule};
 use super::region::is_on;
-use super::{Check, finite_points, unique_name};
+use super::{Check, UNIT, finite_points, unique_name};
 use crate::fault::{KeyPath, SceneFault, show};
-use crate::geometry::{Point, Region, orientation, polyline_length, segments_touch};
-use crate::outline::{find_crossing, nearest_on_rings, nearest_on_segment};
+use crate::geometry::{Point, Region, nearest_on_segment, orientation, polyline_length, segments_touch};
+use crate::outline::{find_crossing, nearest_on_rings};
 use crate::scene::{Body, Crack, Scene};
 
 impl Scene {
@@ -65,6 +66,8 @@ impl Scene {
                     format!("guide `{}` does not start at the {end} {} m of crack `{name}`", guide.name, show(point));
                 return Err(SceneFault::new(key, message, "make its first point the tip"));
             }
+            validate_strength(&key, &guide.name, guide.strength)?;
+            validate_schedule(&key.then("keyframes"), &guide.name, Clock::Seconds, &guide.schedule.points)?;
         }
         if let Some(at) = leaves(&body.region, &crack.points) {
             let message = format!("crack `{name}` leaves body `{}` at {} m", body.name, show(at));
@@ -76,6 +79,11 @@ impl Scene {
         }
         Ok(())
     }
+}
+
+/// The strength of a guide.
+pub(crate) fn validate_strength(path: &KeyPath, guide: &str, strength: f64) -> Check {
+    UNIT.check(path.then("strength"), &format!("the strength of guide `{guide}`"), strength)
 }
 
 /// The fault of naming an end live that lies on the outline.

@@ -1,22 +1,25 @@
 //! What a scene must fulfil to be simulated. Every range is written here, once.
 
 mod cracks;
+mod curve;
 mod motion;
 mod region;
 mod settings;
+mod toughness;
 
 #[cfg(test)]
 pub(crate) use cracks::leaves;
 pub(crate) use cracks::live_mouth;
-pub(crate) use region::validate_region;
+pub(crate) use cracks::validate_strength;
+pub(crate) use curve::{Clock, validate_schedule, validate_speed};
+pub(crate) use region::{overlap, validate_region};
+pub(crate) use toughness::{outside, validate_corners};
 
 use crate::document::PolygonKeys;
 use crate::fault::{KeyPath, SceneFault, short};
 use crate::geometry::{Point, Vector};
 use crate::scene::Scene;
-use geo::{Area, BooleanOps};
 use motion::validate_collider;
-use region::polygon;
 
 type Check = Result<(), SceneFault>;
 
@@ -34,6 +37,9 @@ const FINITE: Range = Range { holds: f64::is_finite, words: "finite" };
 const FRACTION: Range = Range { holds: |v| v > 0.0 && v <= 1.0, words: "above 0 and at most 1" };
 const UNIT: Range = Range { holds: |v| (0.0..=1.0).contains(&v), words: "from 0 to 1" };
 const POISSON: Range = Range { holds: |v| v > -1.0 && v < 0.5, words: "above -1 and below 0.5" };
+const SPREAD: Range = Range { holds: |v| (0.0..1.0).contains(&v), words: "at least 0 and below 1" };
+const ABOVE_ONE: Range = Range { holds: |v| v > 1.0 && v.is_finite(), words: "a finite number above 1" };
+const ACUTE: Range = Range { holds: |v| v > 0.0 && v < 90.0, words: "above 0 and below 90 degrees" };
 const BELOW_ONE: Range = Range { holds: |v| v > 0.0 && v < 1.0, words: "above 0 and below 1" };
 
 impl Range {
@@ -58,6 +64,21 @@ pub(crate) fn finite_points(path: &KeyPath, what: &str, points: &[Point]) -> Che
 /// That a scale is above 0.
 pub(crate) fn positive(path: KeyPath, what: &str, value: f64) -> Check {
     POSITIVE.check(path, what, value)
+}
+
+/// That a number is finite.
+pub(crate) fn finite(path: KeyPath, what: &str, value: f64) -> Check {
+    FINITE.check(path, what, value)
+}
+
+/// That a number is finite and at least 0.
+pub(crate) fn not_negative(path: KeyPath, what: &str, value: f64) -> Check {
+    NOT_NEGATIVE.check(path, what, value)
+}
+
+/// That a spread relative to a mean leaves something.
+pub(crate) fn spread(path: KeyPath, what: &str, value: f64) -> Check {
+    SPREAD.check(path, what, value)
 }
 
 /// That an inline polygon has corners to make rings of.
@@ -92,6 +113,10 @@ impl Scene {
             .iter()
             .enumerate()
             .try_for_each(|(i, s)| self.validate_support(&KeyPath::item("support", i), s))?;
+        self.toughness
+            .iter()
+            .enumerate()
+            .try_for_each(|(i, t)| self.validate_toughness(&KeyPath::item("toughness", i), t))?;
         self.validate_cracks()
     }
 
@@ -130,6 +155,8 @@ impl Scene {
                 return Err(SceneFault::new(path.then("material"), message, remedy));
             }
             validate_region(&path.then("shape"), &format!("the outline of body `{}`", body.name), &body.region)?;
+            let part = |(k, inclusion)| self.validate_inclusion(&path.then("inclusions").then(k), inclusion, body);
+            body.inclusions.iter().enumerate().try_for_each(part)?;
             for v in &body.velocities {
                 let what = format!("the initial velocity of body `{}`", body.name);
                 finite_pair(path.then("velocity"), &what, [v.velocity.x, v.velocity.y])?;
@@ -141,17 +168,12 @@ impl Scene {
         self.validate_overlaps()
     }
 
-    /// Bodies may abut but not overlap. The tolerance covers the rounding of shared borders.
+    /// Bodies may abut but not overlap.
     fn validate_overlaps(&self) -> Check {
         for (i, a) in self.bodies.iter().enumerate() {
             for b in &self.bodies[..i] {
-                let ((a_low, a_high), (b_low, b_high)) = (a.region.bounds(), b.region.bounds());
-                let apart = a_low.x >= b_high.x || b_low.x >= a_high.x || a_low.y >= b_high.y || b_low.y >= a_high.y;
-                if apart {
-                    continue;
-                }
-                let shared = polygon(&a.region).intersection(&polygon(&b.region)).unsigned_area();
-                if shared > 1e-6 * a.region.area().min(b.region.area()) {
+                let shared = overlap(&a.region, &b.region);
+                if shared > 0.0 {
                     return Err(SceneFault::new(
                         KeyPath::item("body", i).then("shape"),
                         format!("body `{}` overlaps body `{}` by {} m²", a.name, b.name, short(shared)),

@@ -1,5 +1,6 @@
 //! Loads, supports, selections and colliders.
 
+use super::curve::{Clock, validate_curve};
 use super::{Check, FINITE, FRICTION, POSITIVE, finite_pair, finite_points, validate_region};
 use crate::fault::{KeyPath, SceneFault};
 use crate::geometry::Region;
@@ -94,7 +95,7 @@ pub(super) fn validate_collider(path: &KeyPath, collider: &Collider) -> Check {
         finite_pair(path.then("position"), "the position of a keyframe", [pose.position.x, pose.position.y])?;
         FINITE.check(path.then("angle"), "the angle of a keyframe", pose.angle)?;
         if i > 0 && collider.keyframes[i - 1].0 >= *time {
-            return Err(not_rising(
+            return Err(Clock::Seconds.not_rising(
                 path,
                 &format!("the keyframes of collider `{name}`"),
                 collider.keyframes[i - 1].0,
@@ -103,23 +104,4 @@ pub(super) fn validate_collider(path: &KeyPath, collider: &Collider) -> Check {
         }
     }
     Ok(())
-}
-
-pub(super) fn validate_curve(path: &KeyPath, curve: &Curve) -> Check {
-    let path = path.then("curve");
-    for (i, &(time, factor)) in curve.points.iter().enumerate() {
-        finite_pair(path.then(i), "a point of the curve", [time, factor])?;
-        if i > 0 && curve.points[i - 1].0 >= time {
-            return Err(not_rising(path.then(i), "the points of the curve", curve.points[i - 1].0, time));
-        }
-    }
-    Ok(())
-}
-
-pub(super) fn not_rising(path: KeyPath, what: &str, before: f64, after: f64) -> SceneFault {
-    SceneFault::new(
-        path,
-        format!("the times of {what} do not rise: {after} s comes after {before} s"),
-        "sort them by time, each time once",
-    )
 }

@@ -4,6 +4,7 @@ use super::{Check, finite_points};
 use crate::fault::{KeyPath, SceneFault, show};
 use crate::geometry::{Point, Region, bounds, orientation, signed_area};
 use crate::outline::find_crossing;
+use geo::{Area, BooleanOps};
 
 /// A region is finite, simple, oriented, and its holes lie inside and apart.
 pub(crate) fn validate_region(path: &KeyPath, what: &str, region: &Region) -> Check {
@@ -50,7 +51,16 @@ pub(super) fn is_on(region: &Region, distance: f64) -> bool {
     distance <= 1e-12 * (low.coords.amax().max(high.coords.amax()))
 }
 
-pub(super) fn polygon(region: &Region) -> geo::Polygon<f64> {
-    let ring = |points: &[Point]| geo::LineString::from_iter(points.iter().map(|p| (p.x, p.y)));
-    geo::Polygon::new(ring(&region.exterior), region.holes.iter().map(|h| ring(h)).collect())
+/// Area that two regions share [m²]; 0 when it is no more than the rounding of a common border.
+pub(crate) fn overlap(a: &Region, b: &Region) -> f64 {
+    let ((a_low, a_high), (b_low, b_high)) = (a.bounds(), b.bounds());
+    if a_low.x >= b_high.x || b_low.x >= a_high.x || a_low.y >= b_high.y || b_low.y >= a_high.y {
+        return 0.0;
+    }
+    let polygon = |region: &Region| {
+        let ring = |points: &[Point]| geo::LineString::from_iter(points.iter().map(|p| (p.x, p.y)));
+        geo::Polygon::new(ring(&region.exterior), region.holes.iter().map(|h| ring(h)).collect())
+    };
+    let shared = polygon(a).intersection(&polygon(b)).unsigned_area();
+    if shared > 1e-6 * a.area().min(b.area()) { shared } else { 0.0 }
 }

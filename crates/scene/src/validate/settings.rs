@@ -1,8 +1,10 @@
 //! Resolution, solver, growth, frames and output.
 
-use super::{Check, FRACTION, FRICTION, NOT_NEGATIVE, POSITIVE, UNIT};
+use super::curve::{Clock, validate_speed};
+use super::{ABOVE_ONE, ACUTE, Check, FRACTION, FRICTION, NOT_NEGATIVE, POSITIVE, UNIT};
 use crate::fault::{KeyPath, SceneFault, short};
 use crate::scene::Scene;
+use crate::settings::Branching;
 
 /// Most particles along the larger side of a body: beyond it a spacing is a slip of the pen.
 const MOST_ALONG_A_SIDE: f64 = 1e5;
@@ -62,10 +64,6 @@ impl Scene {
         if let crate::settings::Transfer::Flip(flip) = s.transfer {
             UNIT.check(solver("transfer"), "the FLIP share", flip)?;
         }
-        let growth = |key: &str| KeyPath::setting("growth", key);
-        POSITIVE.check(growth("increment"), "`increment`", g.increment)?;
-        NOT_NEGATIVE.check(growth("bending"), "`bending`", g.bending)?;
-        FRACTION.check(growth("speed_limit"), "`speed_limit`", g.speed_limit)?;
         let frames = |key: &str| KeyPath::setting("frames", key);
         POSITIVE.check(frames("rate"), "the frame rate", f.rate)?;
         if f.first < 0 {
@@ -76,6 +74,14 @@ impl Scene {
             let message = format!("the last frame {} comes before the first frame {}", f.last, f.first);
             return Err(SceneFault::new(frames("last"), message, "make `last` at least `first`"));
         }
+        let growth = |key: &str| KeyPath::setting("growth", key);
+        POSITIVE.check(growth("increment"), "`increment`", g.increment)?;
+        NOT_NEGATIVE.check(growth("bending"), "`bending`", g.bending)?;
+        FRACTION.check(growth("speed_limit"), "`speed_limit`", g.speed_limit)?;
+        validate_speed(&growth("speed_keyframes"), g.speed_limit, Clock::Seconds, &g.speed_curve.points)?;
+        if let Some(branching) = &g.branching {
+            validate_branching(&growth("branching"), branching)?;
+        }
         POSITIVE.check(KeyPath::setting("output", "thickness"), "the thickness", o.thickness)?;
         NOT_NEGATIVE.check(
             KeyPath::setting("output", "smallest_fragment"),
@@ -83,4 +89,11 @@ impl Scene {
             o.smallest_fragment,
         )
     }
+}
+
+/// Division of tips.
+fn validate_branching(path: &KeyPath, branching: &Branching) -> Check {
+    ABOVE_ONE.check(path.then("release_ratio"), "`release_ratio`", branching.release_ratio)?;
+    ACUTE.check(path.then("half_angle"), "`half_angle`", short(branching.half_angle.to_degrees()))?;
+    POSITIVE.check(path.then("spacing"), "`spacing`", branching.spacing)
 }

@@ -5,8 +5,9 @@ use super::{Resolved, Resolver};
 use crate::document::MaterialKeys;
 use crate::fault::{KeyPath, SceneFault, nearest};
 use crate::geometry::{Point, Vector};
-use crate::presets::{material_preset, material_presets};
+use crate::materials::{SNOW_PLASTICITY, material_preset, material_presets};
 use crate::scene::*;
+use crate::validate::{outside, overlap};
 
 impl<'d> Resolver<'d> {
     pub(super) fn materials_and_bodies(&mut self, tolerance: f64) -> Resolved<(Vec<Material>, Vec<Body>)> {
@@ -23,16 +24,7 @@ impl<'d> Resolver<'d> {
         }
         for (i, keys) in self.document.body.iter().enumerate() {
             let path = KeyPath::item("body", i);
-            let known = materials.iter().position(|m| m.name == keys.material);
-            let material = match (known, material_preset(&keys.material)) {
-                (Some(index), _) => index,
-                (None, Some(preset)) => {
-                    materials.push(preset);
-                    self.material_origin.push(None);
-                    materials.len() - 1
-                }
-                (None, None) => return Err(self.unknown_material(path.then("material"), &keys.material)),
-            };
+            let material = self.material_index(path.then("material"), &keys.material, &mut materials)?;
             let regions = self.regions(&path.then("shape"), &keys.shape, tolerance)?;
             let several = regions.len() > 1;
             for (k, region) in regions.into_iter().enumerate() {
@@ -50,7 +42,55 @@ impl<'d> Resolver<'d> {
                 self.body_origin.push(i);
             }
         }
+        for (i, keys) in self.document.region.iter().enumerate() {
+            self.material_index(KeyPath::item("region", i).then("material"), &keys.material, &mut materials)?;
+        }
         Ok((materials, bodies))
+    }
+
+    /// Index of the material called `name`, which is added to `materials` when it comes with Fissure.
+    fn material_index(&mut self, path: KeyPath, name: &str, materials: &mut Vec<Material>) -> Resolved<usize> {
+        if let Some(index) = materials.iter().position(|m| m.name == name) {
+            return Ok(index);
+        }
+        let preset = material_preset(name).ok_or_else(|| self.unknown_material(path, name))?;
+        materials.push(preset);
+        self.material_origin.push(None);
+        Ok(materials.len() - 1)
+    }
+
+    /// Puts the parts of other materials into their bodies.
+    pub(super) fn inclusions(&mut self, scene: &mut Scene, tolerance: f64) -> Resolved<()> {
+        for (i, keys) in self.document.region.iter().enumerate() {
+            let path = KeyPath::item("region", i);
+            let material = self.material_index(path.then("material"), &keys.material, &mut scene.materials)?;
+            let bodies = self.bodies(path.then("body"), keys.body.as_deref(), scene)?;
+            let shape = path.then("shape");
+            for region in self.sound_regions(&shape, "the outline of the region", &keys.shape, tolerance)? {
+                let mut parts = 0;
+                for &body in &bodies {
+                    let body = &mut scene.bodies[body];
+                    if overlap(&region, &body.region) > 0.0 {
+                        body.inclusions.push(Inclusion { region: region.clone(), material });
+                        parts += 1;
+                    }
+                }
+                if parts == 0 {
+                    let whose = keys.body.as_ref().map_or("any body".into(), |name| format!("body `{name}`"));
+                    return Err(outside(shape, &format!("the region does not overlap {whose}")));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The bodies called `name`: one, or all that were made of a drawing of several outlines; without a name all there are.
+    pub(super) fn bodies(&self, path: KeyPath, name: Option<&str>, scene: &Scene) -> Resolved<Vec<usize>> {
+        let Some(name) = name else { return Ok((0..scene.bodies.len()).collect()) };
+        let all = scene.bodies.iter().enumerate();
+        let made_of: Vec<usize> =
+            all.filter(|(b, _)| self.document.body[self.body_origin[*b]].name == name).map(|(b, _)| b).collect();
+        if made_of.is_empty() { self.body(path, name, scene).map(|body| vec![body]) } else { Ok(made_of) }
     }
 
     pub(super) fn unknown_material(&self, path: KeyPath, name: &str) -> SceneFault {
@@ -94,16 +134,15 @@ impl<'d> Resolver<'d> {
                 SceneFault::new(path.clone(), message, format!("add `{key} = ...` or `base = \"glass\"`"))
             })
         };
-        let snow = material_preset("snow").and_then(|m| m.plasticity);
         Ok(Material {
             young_modulus: value(keys.young_modulus, "young_modulus", |m| m.young_modulus)?,
             poisson_ratio: value(keys.poisson_ratio, "poisson_ratio", |m| m.poisson_ratio)?,
             density: value(keys.density, "density", |m| m.density)?,
             fracture_toughness: value(keys.fracture_toughness, "fracture_toughness", |m| m.fracture_toughness)?,
             limiting_speed: keys.limiting_speed.or_else(|| base.as_ref().and_then(|m| m.limiting_speed)),
-            plasticity: match (keys.plasticity, snow) {
-                (Some(own), Some(snow)) => own.resolve(snow),
-                _ => base.and_then(|m| m.plasticity),
+            plasticity: match keys.plasticity {
+                Some(own) => own.values().map(|values| values.resolve(SNOW_PLASTICITY)),
+                None => base.and_then(|m| m.plasticity),
             },
             name: keys.name.clone(),
         })

@@ -1,12 +1,14 @@
 //! Cracks and their guides.
 
+use super::motion::pairs;
+use super::settings::in_seconds;
 use super::{Resolved, Resolver};
 use crate::document::{CrackKeys, Tips};
 use crate::fault::{KeyPath, SceneFault, nearest, show};
 use crate::geometry::Point;
 use crate::load::seating::{fit_guide, seat_crack};
 use crate::scene::*;
-use crate::validate::live_mouth;
+use crate::validate::{Clock, live_mouth, validate_schedule, validate_strength};
 
 /// Crack ends this near to the outline, in particle spacings, lie on it: twice what flattening may move the outline by.
 const MOUTH_TOLERANCE: f64 = 2.0 * super::FLATTENING;
@@ -37,7 +39,7 @@ impl<'d> Resolver<'d> {
                 points: seated.points,
                 name,
             };
-            self.guides(&path, keys, &mut crack, &line, GUIDE_TOLERANCE * scene.particle_spacing, tolerance)?;
+            self.guides(&path, keys, &mut crack, &line, scene, tolerance)?;
             scene.cracks.push(crack);
         }
         Ok(())
@@ -51,20 +53,9 @@ impl<'d> Resolver<'d> {
         line: &[Point],
         scene: &Scene,
     ) -> Resolved<usize> {
-        let candidates: Vec<usize> = match &keys.body {
-            // A drawing of several outlines: any of the bodies made from it.
-            Some(wanted) => {
-                let exact = scene.bodies.iter().position(|b| &b.name == wanted);
-                let several =
-                    (0..scene.bodies.len()).filter(|&b| &self.document.body[self.body_origin[b]].name == wanted);
-                exact.map_or_else(|| several.collect(), |b| vec![b])
-            }
-            None => (0..scene.bodies.len()).collect(),
-        };
-        match (candidates.as_slice(), &keys.body) {
-            ([only], _) => return Ok(*only),
-            ([], Some(wanted)) => return self.body(path.then("body"), wanted, scene),
-            _ => {}
+        let candidates = self.bodies(path.then("body"), keys.body.as_deref(), scene)?;
+        if let [only] = candidates.as_slice() {
+            return Ok(*only);
         }
         let inside: Vec<usize> = candidates
             .iter()
@@ -89,14 +80,14 @@ impl<'d> Resolver<'d> {
         }
     }
 
-    /// Fits the guides of one crack; `drawn` is its line before it was cut at the outline, `reach` how far off a guide may be.
+    /// Fits the guides of one crack; `drawn` is its line before it was cut at the outline.
     pub(super) fn guides(
         &self,
         path: &KeyPath,
         keys: &CrackKeys,
         crack: &mut Crack,
         drawn: &[Point],
-        reach: f64,
+        scene: &Scene,
         tolerance: f64,
     ) -> Resolved<()> {
         let only_live = match (crack.start_live, crack.end_live) {
@@ -130,13 +121,21 @@ impl<'d> Resolver<'d> {
             let Some(index) = names.iter().position(|n| n == guide) else {
                 return Err(SceneFault::new(path, format!("there is no guide `{guide}`"), nearest(guide, &names)));
             };
-            let line_path = KeyPath::item("guide", index).then("line");
-            let line = self.line(&line_path, &self.document.guide[index].line, tolerance)?;
+            let guide_path = KeyPath::item("guide", index);
+            let guide_keys = &self.document.guide[index];
+            let line_path = guide_path.then("line");
+            let line = self.line(&line_path, &guide_keys.line, tolerance)?;
+            let reach = GUIDE_TOLERANCE * scene.particle_spacing;
             let points = fit_guide(&line, tip, drawn, reach).map_err(|(message, remedy)| {
                 let message = format!("guide `{guide}` does not fit crack `{}`: {message}", crack.name);
                 SceneFault::new(line_path, message, remedy)
             })?;
-            let fitted = Some(Guide { name: guide.clone(), points, strength: 1.0, schedule: Curve::default() });
+            let strength = guide_keys.strength.unwrap_or(1.0);
+            validate_strength(&guide_path, guide, strength)?;
+            let keyframes = pairs(&guide_keys.keyframes);
+            validate_schedule(&guide_path.then("keyframes"), guide, Clock::Frames, &keyframes)?;
+            let schedule = in_seconds(&keyframes, &scene.frames);
+            let fitted = Some(Guide { name: guide.clone(), points, strength, schedule });
             *[&mut crack.start_guide, &mut crack.end_guide][end] = fitted;
         }
         Ok(())
@@ -151,13 +150,7 @@ pub(super) fn live_ends(
     points: &[Point],
     mouths: [bool; 2],
 ) -> Resolved<[bool; 2]> {
-    let live = match tips {
-        None => [!mouths[0], !mouths[1]],
-        Some(Tips::Start) => [true, false],
-        Some(Tips::End) => [false, true],
-        Some(Tips::Both) => [true, true],
-        Some(Tips::None) => [false, false],
-    };
+    let live = tips.map_or([!mouths[0], !mouths[1]], Tips::live);
     for (end, word) in ["start", "end"].into_iter().enumerate() {
         if live[end] && mouths[end] {
             return Err(live_mouth(path, name, word, points[end * (points.len() - 1)]));

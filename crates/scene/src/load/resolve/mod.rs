@@ -2,11 +2,14 @@
 
 mod bodies;
 mod cracks;
+mod flaws;
 mod motion;
 mod settings;
 mod shapes;
+mod toughness;
 
 use super::drawing::LoadedDrawing;
+use super::picture::Picture;
 use crate::document::Document;
 use crate::fault::{Key, KeyPath, SceneFault};
 use crate::geometry::Vector;
@@ -24,16 +27,26 @@ const FLATTENING: f64 = 1.0 / 20.0;
 pub(crate) struct Resolver<'d> {
     document: &'d Document,
     drawing: Option<&'d LoadedDrawing>,
+    /// For each `[[toughness]]`: its image, if it has one.
+    pictures: &'d [Option<Picture>],
     default_name: String,
     /// For each body of the scene: which `[[body]]` it comes from.
     body_origin: Vec<usize>,
     /// For each material of the scene: which `[[material]]` it comes from.
     material_origin: Vec<Option<usize>>,
+    /// For each patch of toughness of the scene: which `[[toughness]]` it comes from.
+    toughness_origin: Vec<usize>,
 }
 
 impl<'d> Resolver<'d> {
-    pub(crate) fn new(document: &'d Document, drawing: Option<&'d LoadedDrawing>, default_name: String) -> Self {
-        Self { document, drawing, default_name, body_origin: Vec::new(), material_origin: Vec::new() }
+    pub(crate) fn new(
+        document: &'d Document,
+        drawing: Option<&'d LoadedDrawing>,
+        pictures: &'d [Option<Picture>],
+        default_name: String,
+    ) -> Self {
+        let (body_origin, material_origin, toughness_origin) = (Vec::new(), Vec::new(), Vec::new());
+        Self { document, drawing, pictures, default_name, body_origin, material_origin, toughness_origin }
     }
 
     /// The scene, validated.
@@ -51,15 +64,18 @@ impl<'d> Resolver<'d> {
         // A spacing larger than the bodies is reported by the validation; the shapes must not depend on it until then.
         let tolerance = FLATTENING * particle_spacing.min(side / 16.0);
         let (materials, bodies) = self.materials_and_bodies(tolerance)?;
-        let (solver, growth) = self.solver(&materials)?;
+        let cell_size = document.grid.cell_size.unwrap_or(2.0 * particle_spacing);
+        let frames = self.frames()?;
+        let solver = self.solver(&materials);
+        let growth = self.growth(&frames, cell_size)?;
         let mut scene = Scene {
             name: document.name.clone().unwrap_or_else(|| self.default_name.clone()),
             hash: String::new(),
             plane: document.plane,
             gravity: Vector::from(document.gravity),
             particle_spacing,
-            cell_size: document.grid.cell_size.unwrap_or(2.0 * particle_spacing),
-            frames: self.frames()?,
+            cell_size,
+            frames,
             output: self.output(side)?,
             colliders: self.colliders(tolerance)?,
             cracks: Vec::new(),
@@ -74,9 +90,12 @@ impl<'d> Resolver<'d> {
         scene.loads = self.loads(&scene, tolerance)?;
         scene.supports = self.supports(&scene, tolerance)?;
         self.initial_velocities(&mut scene, tolerance)?;
-        // The bodies must be sound before cracks are fitted into them.
+        // The bodies must be sound before anything is fitted into them.
         scene.validate().map_err(|fault| self.in_document(fault))?;
+        self.inclusions(&mut scene, tolerance)?;
+        scene.toughness = self.toughness(&scene, tolerance)?;
         self.cracks(&mut scene, tolerance)?;
+        self.flaws(&mut scene, tolerance)?;
         scene.validate().map_err(|fault| self.in_document(fault))?;
         Ok(scene)
     }
@@ -87,6 +106,9 @@ impl<'d> Resolver<'d> {
             match array.as_str() {
                 "body" => *index = self.body_origin.get(*index).copied().unwrap_or(*index),
                 "material" => *index = self.material_origin.get(*index).copied().flatten().unwrap_or(usize::MAX),
+                "toughness" => *index = self.toughness_origin.get(*index).copied().unwrap_or(*index),
+                // Only cracks that were scattered come after those that were drawn.
+                "crack" if *index >= self.document.crack.len() => fault.path = KeyPath::top("flaws"),
                 _ => {}
             }
         }

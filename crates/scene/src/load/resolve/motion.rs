@@ -186,6 +186,10 @@ impl<'d> Resolver<'d> {
     }
 }
 
-pub(super) fn curve(list: &[[f64; 2]]) -> Curve {
-    Curve { points: list.iter().map(|&[time, factor]| (time, factor)).collect() }
+fn curve(list: &[[f64; 2]]) -> Curve {
+    Curve { points: pairs(list) }
+}
+
+pub(super) fn pairs(list: &[[f64; 2]]) -> Vec<(f64, f64)> {
+    list.iter().map(|&[at, value]| (at, value)).collect()
 }

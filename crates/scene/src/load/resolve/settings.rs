@@ -1,16 +1,25 @@
 //! Solver, growth, frames and output.
 
+use super::motion::pairs;
 use super::{Resolved, Resolver};
 use crate::document::TimeStep;
 use crate::fault::{KeyPath, SceneFault};
 use crate::presets::{solver_preset, updated_kernel};
-use crate::scene::Material;
+use crate::scene::{Curve, Material};
 use crate::settings::*;
+use crate::validate::{Clock, validate_speed};
+
+/// Division of tips, unless the scene says otherwise. Two tips need twice the energy of one.
+const RELEASE_RATIO: f64 = 2.0;
+/// [°], to either side.
+const HALF_ANGLE: f64 = 27.0;
+/// In cells: branches are apart by the domains that their tips are measured in.
+const BRANCH_SPACING: f64 = 12.0;
 
 impl<'d> Resolver<'d> {
-    pub(super) fn solver(&self, materials: &[Material]) -> Resolved<(SolverSettings, GrowthSettings)> {
-        let (keys, growth_keys) = (&self.document.solver, &self.document.growth);
-        let (mut s, mut g) = solver_preset(keys.preset);
+    pub(super) fn solver(&self, materials: &[Material]) -> SolverSettings {
+        let keys = &self.document.solver;
+        let (mut s, _) = solver_preset(keys.preset);
         let flows = materials.iter().any(|m| m.plasticity.is_some());
         s.formulation = keys.formulation.unwrap_or(s.formulation);
         let moves_through_grid = s.formulation == Formulation::Updated || (s.formulation == Formulation::Auto && flows);
@@ -33,11 +42,27 @@ impl<'d> Resolver<'d> {
         s.j_radius = keys.j_radius.unwrap_or(s.j_radius);
         s.area_term = keys.area_term.unwrap_or(s.area_term);
         s.mode_split = keys.mode_split.unwrap_or(s.mode_split);
-        g.enabled = growth_keys.enabled.unwrap_or(g.enabled);
-        g.increment = growth_keys.increment.unwrap_or(g.increment);
-        g.bending = growth_keys.bending.unwrap_or(g.bending);
-        g.speed_limit = growth_keys.speed_limit.unwrap_or(g.speed_limit);
-        Ok((s, g))
+        s
+    }
+
+    pub(super) fn growth(&self, frames: &FrameSettings, cell_size: f64) -> Resolved<GrowthSettings> {
+        let keys = &self.document.growth;
+        let (_, mut g) = solver_preset(self.document.solver.preset);
+        g.enabled = keys.enabled.unwrap_or(g.enabled);
+        g.increment = keys.increment.unwrap_or(g.increment);
+        g.bending = keys.bending.unwrap_or(g.bending);
+        g.speed_limit = keys.speed_limit.unwrap_or(g.speed_limit);
+        let speed = pairs(&keys.speed_keyframes);
+        validate_speed(&KeyPath::setting("growth", "speed_keyframes"), g.speed_limit, Clock::Frames, &speed)?;
+        g.speed_curve = in_seconds(&speed, frames);
+        if let Some(branching) = keys.branching {
+            g.branching = branching.values().map(|values| Branching {
+                release_ratio: values.release_ratio.unwrap_or(RELEASE_RATIO),
+                half_angle: values.half_angle.unwrap_or(HALF_ANGLE).to_radians(),
+                spacing: values.spacing.unwrap_or(BRANCH_SPACING * cell_size),
+            });
+        }
+        Ok(g)
     }
 
     pub(super) fn frames(&self) -> Resolved<FrameSettings> {
@@ -78,4 +103,10 @@ impl<'d> Resolver<'d> {
             smallest_fragment: keys.smallest_fragment,
         })
     }
+}
+
+/// A curve over frames as one over time.
+pub(super) fn in_seconds(points: &[(f64, f64)], frames: &FrameSettings) -> Curve {
+    let seconds = |&(frame, value): &(f64, f64)| ((frame - frames.first as f64) / frames.rate, value);
+    Curve { points: points.iter().map(seconds).collect() }
 }

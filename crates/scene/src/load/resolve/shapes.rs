@@ -7,7 +7,7 @@ use crate::geometry::{Point, Region, Vector, bounds, polyline_length, signed_are
 use crate::load::drawing::LoadedDrawing;
 use crate::load::seating::Complaint;
 use crate::outline::{circle_ring, clean_ring, find_crossing, oriented};
-use crate::validate::{enough_corners, finite_pair, finite_points, positive};
+use crate::validate::{enough_corners, finite_pair, finite_points, positive, validate_region};
 
 impl<'d> Resolver<'d> {
     pub(super) fn bodies_box(&self) -> Resolved<(Point, Point)> {
@@ -65,6 +65,19 @@ impl<'d> Resolver<'d> {
                 self.drawing(&path, id)?.regions(id, tolerance).map_err(at(&path))
             }
         }
+    }
+
+    /// The regions of a shape that nothing validates later. `what`: what they are, in words.
+    pub(super) fn sound_regions(
+        &self,
+        path: &KeyPath,
+        what: &str,
+        shape: &Shape,
+        tolerance: f64,
+    ) -> Resolved<Vec<Region>> {
+        let regions = self.regions(path, shape, tolerance)?;
+        regions.iter().try_for_each(|region| validate_region(path, what, region))?;
+        Ok(regions)
     }
 
     pub(super) fn line(&self, path: &KeyPath, line: &Line, tolerance: f64) -> Resolved<Vec<Point>> {

@@ -1,0 +1,98 @@
+//! Cracks, guides and flaws of a scene file.
+
+use super::{Line, Shape};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A crack that is there from the start.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CrackKeys {
+    /// Name, unique among the cracks. Default: `crack-1`, `crack-2`, ...
+    pub name: Option<String>,
+    /// Body the crack runs in. Default: the one body it lies in.
+    pub body: Option<String>,
+    /// Its line, open. Ends that stick out of the body are cut off at the outline. Required.
+    pub line: Line,
+    /// Which ends may grow. Default: every end that lies inside the body.
+    pub tips: Option<Tips>,
+    /// Name of the guide that the only live tip follows.
+    pub guide: Option<String>,
+    /// Name of the guide that the tip at the first point follows.
+    pub guide_start: Option<String>,
+    /// Name of the guide that the tip at the last point follows.
+    pub guide_end: Option<String>,
+}
+
+/// Ends of a crack that may grow.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Tips {
+    /// The first point.
+    Start,
+    /// The last point.
+    End,
+    /// Both ends.
+    #[default]
+    Both,
+    /// Neither.
+    None,
+}
+
+impl Tips {
+    /// Whether the first and the last point may grow.
+    pub fn live(self) -> [bool; 2] {
+        [matches!(self, Self::Start | Self::Both), matches!(self, Self::End | Self::Both)]
+    }
+}
+
+/// A drawn path for a crack tip. It begins at the tip, or runs along the crack first.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GuideKeys {
+    /// Name that cracks refer to. Required.
+    pub name: String,
+    /// Its line, open. Required.
+    pub line: Line,
+    /// How much the path decides where the crack goes: 0 not at all, 1 (default) exactly along it, between them a blend
+    /// of the drawn and the physical direction.
+    pub strength: Option<f64>,
+    /// When the crack is where: [[frame, fraction of the path's length, 0 to 1], ...], frames rising, fractions never
+    /// falling, linear between. Default: fracture mechanics decide when the crack grows.
+    #[serde(default)]
+    pub keyframes: Vec<[f64; 2]>,
+}
+
+/// Small straight cracks scattered at random: the same seed gives the same flaws on every machine. Give `density` or `count`.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FlawsKeys {
+    /// Name; the flaws are the cracks `name.1`, `name.2`, ... Default: `flaws-1`, `flaws-2`, ...
+    pub name: Option<String>,
+    /// Body they lie in. Default: all bodies.
+    pub body: Option<String>,
+    /// Only flaws with their centre inside this shape.
+    pub shape: Option<Shape>,
+    /// Flaws per m².
+    pub density: Option<f64>,
+    /// Number of flaws.
+    pub count: Option<u32>,
+    /// Mean length in m. Required. Several cells, for the grid to see them as cracks.
+    pub length: f64,
+    /// Lengths vary evenly by this part of the mean, 0 to below 1. Default: 0, all of the same length.
+    #[serde(default)]
+    pub length_spread: f64,
+    /// Direction in degrees, counter-clockwise from x. Default: with `angle_spread` 0, otherwise all directions.
+    pub angle: Option<f64>,
+    /// Directions vary evenly by this much to either side of `angle`, in degrees. Default: with `angle` 0, otherwise 90: all
+    /// directions.
+    pub angle_spread: Option<f64>,
+    /// Number that stands for one arrangement. Default: 0.
+    #[serde(default)]
+    pub seed: u64,
+    /// Least distance in m from the outline, from cracks and from other flaws. Default: two cells.
+    pub margin: Option<f64>,
+    /// Which ends may grow. Default: both.
+    #[serde(default)]
+    pub tips: Tips,
+}

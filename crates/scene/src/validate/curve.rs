@@ -1,0 +1,90 @@
+//! Values over time, in seconds or in frames.
+
+use super::{Check, NOT_NEGATIVE, UNIT, finite_pair};
+use crate::fault::{KeyPath, SceneFault, short};
+use crate::scene::Curve;
+
+/// What the first numbers of a curve count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Clock {
+    /// Seconds.
+    Seconds,
+    /// Frames, as a scene file has them.
+    Frames,
+}
+
+impl Clock {
+    fn word(self) -> &'static str {
+        match self {
+            Self::Seconds => "time",
+            Self::Frames => "frame",
+        }
+    }
+
+    fn unit(self) -> &'static str {
+        match self {
+            Self::Seconds => " s",
+            Self::Frames => "",
+        }
+    }
+
+    /// That the numbers are finite and rise. `what`: the points of what, in words.
+    fn check(self, path: &KeyPath, what: &str, points: &[(f64, f64)]) -> Check {
+        for (i, &(at, value)) in points.iter().enumerate() {
+            finite_pair(path.then(i), &format!("one of {what}"), [at, value])?;
+            if i > 0 && points[i - 1].0 >= at {
+                return Err(self.not_rising(path.then(i), what, points[i - 1].0, at));
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn not_rising(self, path: KeyPath, what: &str, before: f64, after: f64) -> SceneFault {
+        let (word, unit) = (self.word(), self.unit());
+        SceneFault::new(
+            path,
+            format!("the {word}s of {what} do not rise: {after}{unit} comes after {before}{unit}"),
+            format!("sort them by {word}, each {word} once"),
+        )
+    }
+}
+
+/// The factor of a load or support over time.
+pub(super) fn validate_curve(path: &KeyPath, curve: &Curve) -> Check {
+    Clock::Seconds.check(&path.then("curve"), "the points of the curve", &curve.points)
+}
+
+/// The schedule of a guide: fractions of its length that never fall.
+pub(crate) fn validate_schedule(path: &KeyPath, guide: &str, clock: Clock, points: &[(f64, f64)]) -> Check {
+    clock.check(path, &format!("the keyframes of guide `{guide}`"), points)?;
+    for (i, &(_, fraction)) in points.iter().enumerate() {
+        UNIT.check(path.then(i), &format!("a fraction of the length of guide `{guide}`"), fraction)?;
+        if i > 0 && points[i - 1].1 > fraction {
+            return Err(SceneFault::new(
+                path.then(i),
+                format!("guide `{guide}` goes back: the fraction {fraction} comes after {}", points[i - 1].1),
+                "a crack does not heal: fractions of the length may rise or stay",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// The factor on the highest speed: with `limit` it stays within the Rayleigh wave speed.
+pub(crate) fn validate_speed(path: &KeyPath, limit: f64, clock: Clock, points: &[(f64, f64)]) -> Check {
+    clock.check(path, "the keyframes of the speed", points)?;
+    for (i, &(_, factor)) in points.iter().enumerate() {
+        NOT_NEGATIVE.check(path.then(i), "a factor on the speed limit", factor)?;
+        if factor * limit > 1.0 {
+            return Err(SceneFault::new(
+                path.then(i),
+                format!(
+                    "a factor of {factor} on `speed_limit` = {limit} is {} Rayleigh wave speeds",
+                    short(factor * limit)
+                ),
+                format!("no crack is faster than one: make it at most {}", short(1.0 / limit)),
+            ));
+        }
+    }
+    Ok(())
+}
