@@ -1,7 +1,7 @@
 //! Which fragment each particle belongs to.
 
 use crate::crack::Crack;
-use crate::division::{CrackLine, Division, LineEnd};
+use crate::division::{CrackLine, Division, LineEnd, TipCut};
 use crate::particles::Particles;
 use fissure_scene::{CrackEnd, TipDivision};
 use std::collections::HashMap;
@@ -19,7 +19,7 @@ pub(crate) fn split(particles: &Particles, cracks: &[Crack], cell_size: f64, pie
             CrackLine { crack: i as u32, points: c.points.clone(), start: end(c.ends[0]), end: end(c.ends[1]) }
         })
         .collect();
-    let division = Division::new(&lines, TipDivision::LineCrossing, cell_size, s, s / cell_size);
+    let division = Division::new(&lines, TipDivision::LineCrossing, TipCut::PLAIN, cell_size, s, s / cell_size);
     let at: HashMap<[i32; 2], usize> = particles.place.iter().enumerate().map(|(p, &place)| (place, p)).collect();
     let mut parent: Vec<usize> = (0..particles.len()).collect();
     fn root(parent: &mut [usize], mut p: usize) -> usize {

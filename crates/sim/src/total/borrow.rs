@@ -40,6 +40,7 @@ impl Total {
                 stiffness[entry.field as usize] += modulus * (g[0] * g[0] + g[1] * g[1]);
             }
         });
+        self.add_tie_stiffness(&mut stiffness);
         let most = LARGEST_RATIO * speed_squared / (self.grid.cell_size * self.grid.cell_size);
         let mut loans = Vec::new();
         for (node, further) in self.state.fields.divided_nodes() {

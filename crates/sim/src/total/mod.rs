@@ -13,12 +13,13 @@ mod recut;
 mod rows;
 #[cfg(test)]
 mod tests;
+mod tie;
 
 use crate::SimulationError;
 use crate::collider::Obstacle;
 use crate::crack::Crack;
 use crate::crossing::Side;
-use crate::division::{CrackLine, Division};
+use crate::division::{CrackLine, Division, TipCut};
 use crate::elastic::Elastic;
 use crate::fields::Fields;
 use crate::grid::Grid;
@@ -85,6 +86,7 @@ pub(crate) struct Total {
     loads: Vec<Vec<PointForce>>,
     constraints: Vec<Constraint>,
     contacts: Vec<ContactPair>,
+    ties: Vec<tie::Tie>,
     surface: Vec<boundary::SurfaceNode>,
     steps_since_check: u32,
 }
@@ -163,11 +165,13 @@ impl Total {
             loads: Vec::new(),
             constraints: Vec::new(),
             contacts: Vec::new(),
+            ties: Vec::new(),
             surface: Vec::new(),
             particles,
             steps_since_check: 0,
         };
         solver.cut_all();
+        solver.ties = solver.ties_of(cracks);
         solver.borrow_mass();
         solver.lay_probes(cracks);
         solver.set_initial_velocities();
@@ -197,7 +201,7 @@ impl Total {
         let beyond = 2.0 * reach * scene.cell_size;
         let lines: Vec<CrackLine> =
             cracks.iter().enumerate().map(|(i, c)| c.line(i, c.points.clone(), beyond)).collect();
-        Division::new(&lines, scene.solver.tip_division, scene.cell_size, scene.particle_spacing, reach)
+        Division::new(&lines, scene.solver.tip_division, TipCut::TIED, scene.cell_size, scene.particle_spacing, reach)
     }
 
     /// Whether uncut cells can go as rows.
@@ -307,6 +311,7 @@ impl Total {
             }
         }
         self.add_cut_forces(u, force_x, force_y);
+        self.add_tie_forces(u, force);
     }
 
     fn kinetic(&self) -> f64 {
@@ -323,7 +328,8 @@ impl Total {
                 let h = self.gradient(p, &self.state.displacement);
                 self.particles.volume[p] * crate::energy_density(&h, e.mu, e.lambda)
             })
-            .sum()
+            .sum::<f64>()
+            + self.tie_energy()
     }
 }
 

@@ -45,6 +45,7 @@ impl Total {
         self.constraints = self.constraints_of_supports()?;
         self.surface = self.surface_nodes();
         self.contacts = self.contact_pairs(cracks);
+        self.ties = self.ties_of(cracks);
         Ok(())
     }
 
@@ -69,7 +70,7 @@ impl Total {
         self.division = Self::division_of(&self.scene, cracks);
         let boxes: Vec<(Point, Point)> =
             changed.iter().map(|&(crack, end)| self.changed_box(&cracks[crack], end)).collect();
-        self.recut_particles(&boxes);
+        self.recut_particles(cracks, &boxes);
         self.refresh_probes(cracks, changed, &boxes);
         // Selections were checked when the solver was built.
         if self.refresh(cracks).is_err() {
@@ -89,7 +90,7 @@ impl Total {
         (low - reach, high + reach)
     }
 
-    fn recut_particles(&mut self, boxes: &[(Point, Point)]) {
+    fn recut_particles(&mut self, cracks: &[Crack], boxes: &[(Point, Point)]) {
         let s = self.particles.spacing;
         let mut affected: Vec<usize> = Vec::new();
         for (low, high) in boxes {
@@ -140,6 +141,7 @@ impl Total {
         self.give_back();
         self.hand_over(&changes);
         self.state.cut.replace(stencils);
+        self.ties = self.ties_of(cracks);
         self.borrow_mass();
     }
 

@@ -21,7 +21,7 @@ mod transfer;
 use crate::SimulationError;
 use crate::collider::Obstacle;
 use crate::crack::Crack;
-use crate::division::{CrackLine, Division};
+use crate::division::{CrackLine, Division, TipCut};
 use crate::elastic::Elastic;
 use crate::kernel;
 use crate::particles::Particles;
@@ -165,7 +165,14 @@ impl Updated {
             stable_number,
             most_nodes,
             state,
-            division: Division::new(&[], scene.solver.tip_division, scene.cell_size, scene.particle_spacing, 0.0),
+            division: Division::new(
+                &[],
+                scene.solver.tip_division,
+                TipCut::PLAIN,
+                scene.cell_size,
+                scene.particle_spacing,
+                0.0,
+            ),
             nodes: Nodes::default(),
             order: RowOrder::default(),
             cut: Cut::default(),
@@ -193,7 +200,14 @@ impl Updated {
             .enumerate()
             .map(|(i, (crack, now))| crack.line(i, now.position.clone(), beyond))
             .collect();
-        Division::new(&lines, self.settings.tip_division, self.scene.cell_size, self.scene.particle_spacing, reach)
+        Division::new(
+            &lines,
+            self.settings.tip_division,
+            TipCut::PLAIN,
+            self.scene.cell_size,
+            self.scene.particle_spacing,
+            reach,
+        )
     }
 
     /// Elastic constants (μ, λ) of a particle, hardening included [Pa].
