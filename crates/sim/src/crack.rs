@@ -32,6 +32,8 @@ pub(crate) struct Tip {
     pub(crate) grown_at_frame: f64,
     /// What was measured last.
     pub(crate) measured: Measured,
+    /// Direction of growth asked for by the stress, averaged over the last moments; at rest, not normalised. Zero: nothing known.
+    pub(crate) heading: Vector,
 }
 
 /// What was measured at a tip last. Symbols and units as in [`TipRecord`].
@@ -141,6 +143,7 @@ impl Crack {
                 grown: 0.0,
                 grown_at_frame: 0.0,
                 measured: Measured::default(),
+                heading: Vector::zeros(),
             })
         };
         Self {

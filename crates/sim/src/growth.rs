@@ -64,6 +64,38 @@ fn direction(crack: &Crack, end: End, measured: &Measured, scene: &Scene) -> Opt
     Some((angle, split.equivalent(angle) * scale))
 }
 
+/// The direction that the stress asks for now: unit vector, at rest.
+fn asked(crack: &Crack, end: End, measured: &Measured, scene: &Scene) -> Vector {
+    let ahead = crack.ahead(end, crate::crack::DIRECTION_LENGTH * scene.cell_size);
+    let (sine, cosine) = measured.kink_angle.sin_cos();
+    Vector::new(cosine * ahead.x - sine * ahead.y, sine * ahead.x + cosine * ahead.y)
+}
+
+/// The heading of a tip after one more measurement, `time_step` [s] after the last one.
+///
+/// Every increment sends out waves, and the ratio of the modes swings with them at a period that is the lattice's, not the body's. A running tip follows
+/// the mean over the time that a shear wave takes for [`HEADING_CELLS`]; a resting one has no waves of its own and starts as the stress is.
+pub(crate) fn heading(
+    crack: &Crack,
+    end: End,
+    measured: &Measured,
+    scene: &Scene,
+    elastic: &[crate::Elastic],
+    time_step: f64,
+) -> Vector {
+    let now = asked(crack, end, measured, scene);
+    let Some(tip) = &crack.tips[slot(end)] else { return now };
+    if tip.state != TipState::Growing || tip.heading == Vector::zeros() {
+        return now;
+    }
+    let slowest = elastic.iter().map(crate::Elastic::shear_wave_speed).fold(f64::INFINITY, f64::min);
+    let window = HEADING_CELLS * scene.cell_size / slowest;
+    tip.heading + (now - tip.heading) * (1.0 - (-time_step / window).exp())
+}
+
+/// Distance over which the heading is averaged, in cells.
+const HEADING_CELLS: f64 = 2.0;
+
 /// The next increment of a tip that wants to grow.
 pub(crate) fn advance(cracks: &[Crack], index: usize, end: End, measured: &Measured, scene: &Scene) -> Option<Advance> {
     let crack = &cracks[index];
@@ -94,10 +126,7 @@ pub(crate) fn advance(cracks: &[Crack], index: usize, end: End, measured: &Measu
         let state = if ended { TipState::GuideEnded } else { TipState::Growing };
         return Some(Advance { points, end: CrackEnd::Tip, state });
     }
-    let (angle, _) = direction(crack, end, measured, scene)?;
-    let ahead = crack.ahead(end, crate::crack::DIRECTION_LENGTH * scene.cell_size);
-    let (sine, cosine) = angle.sin_cos();
-    let toward = Vector::new(cosine * ahead.x - sine * ahead.y, sine * ahead.x + cosine * ahead.y);
+    let toward = tip.heading.try_normalize(0.0).unwrap_or_else(|| asked(crack, end, measured, scene));
     if let Some(hit) = first_obstacle(cracks, index, end, region, from, from + toward * (step + LAST_LIGAMENT * h)) {
         return Some(hit.finish(Vec::new(), from));
     }

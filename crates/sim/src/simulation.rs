@@ -372,8 +372,10 @@ impl Simulation {
         solver.step(cracks, state.time, time_step, &mut observe)?;
         state.steps += 1;
         for (&(crack, end), m) in live.iter().zip(&measured) {
+            let heading = growth::heading(&state.cracks[crack], end, m, scene, elastic, time_step);
             if let Some(tip) = &mut state.cracks[crack].tips[slot(end)] {
                 tip.measured = *m;
+                tip.heading = heading;
             }
         }
         let time = state.time + time_step;
