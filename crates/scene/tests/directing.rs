@@ -103,9 +103,9 @@ fn pictures_are_part_of_the_scene() {
     let (black, again, dark) = (paint(0), paint(0), paint(1));
     assert_eq!(black, again);
     assert_ne!(black.hash, dark.hash);
-    // The rectangle of 10 m holds 128 half particle spacings; pixels are no finer, and sharp edges stay within one.
+    // The rectangle of 10 m holds 64 particle spacings; pixels are no finer, and sharp edges stay within one.
     let ToughnessKind::Image(image) = &black.toughness[0].kind else { unreachable!() };
-    assert_eq!((image.columns, image.rows, image.max), (128, 128, Point::new(10.0, 10.0)));
+    assert_eq!((image.columns, image.rows, image.max), (64, 64, Point::new(10.0, 10.0)));
     let at = |x| black.toughness_factor(0, Point::new(x, 5.0));
     assert_eq!([at(-0.1), at(0.0), at(4.9), at(5.1), at(10.0)], [1.0, 0.2, 0.2, 1.0, 1.0]);
     let json = serde_json::to_string(&black).unwrap();

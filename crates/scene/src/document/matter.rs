@@ -70,7 +70,7 @@ pub struct ToughnessKeys {
     /// Factor on the fracture toughness inside `shape`, above 0.
     pub factor: Option<f64>,
     /// PNG, relative to the scene file, that paints the factor in shades of grey. Colours count by their luminance, what is
-    /// transparent counts as white. Detail finer than half a particle spacing is averaged.
+    /// transparent counts as white. Detail finer than the particle spacing is averaged.
     pub image: Option<PathBuf>,
     /// Factor where the image is black, above 0. Default: 0.2.
     pub black: Option<f64>,

@@ -10,6 +10,7 @@ use std::marker::PhantomData;
 /// `false`: off; `true`: on, every value as by default; a table: on, with these values.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
+#[schemars(rename = "{T}OrSwitch")]
 pub enum Switch<T> {
     /// Off, or on with the values by default.
     On(bool),

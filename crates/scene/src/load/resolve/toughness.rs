@@ -12,8 +12,9 @@ use crate::validate::{outside, overlap, positive, validate_corners};
 /// Factors that stand for black and white unless the scene says otherwise: a crack needs a 25th of the energy in black.
 const BLACK: f64 = 0.2;
 const WHITE: f64 = 1.0;
-/// Pixels smaller than this, in particle spacings, are averaged: a crack moves on by as much at a time, and a take keeps the image.
-const SMALLEST_PIXEL: f64 = 0.5;
+/// Pixels smaller than this, in particle spacings, are averaged: stress is not known any finer, and the manifest of a take, which is
+/// written with every frame, keeps the image.
+const SMALLEST_PIXEL: f64 = 1.0;
 
 impl<'d> Resolver<'d> {
     pub(super) fn toughness(&mut self, scene: &Scene, tolerance: f64) -> Resolved<Vec<ToughnessPatch>> {
