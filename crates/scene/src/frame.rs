@@ -142,8 +142,6 @@ pub enum TipState {
     LeftBody,
     /// Has met another crack and ends on it.
     MetCrack,
-    /// Has split in two; its branches go on.
-    Branched,
     /// Has reached the end of its guide and stays there.
     GuideEnded,
 }

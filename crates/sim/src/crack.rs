@@ -1,7 +1,8 @@
 //! Cracks while they live: where they run at rest, what their ends are, how far their tips have come.
 
 use crate::division::{CrackLine, LineEnd};
-use fissure_scene::{CrackEnd, End, Guide, Point, Scene, TipRecord, TipState, Vector, polyline_length};
+use crate::guide::GuideWalk;
+use fissure_scene::{CrackEnd, End, Point, Scene, TipRecord, TipState, Vector, polyline_length};
 use serde::{Deserialize, Serialize};
 
 /// A crack. All positions are at rest; a solver knows where they are now.
@@ -24,8 +25,14 @@ pub(crate) struct Tip {
     pub(crate) state: TipState,
     /// Path to follow.
     pub(crate) guide: Option<GuideWalk>,
-    /// The tip may not grow again before this time [s].
-    pub(crate) ready: f64,
+    /// How far the tip is ahead of what the speed limit allows [m]; it may grow when this is not positive.
+    pub(crate) ahead_of_limit: f64,
+    /// Steps since it grew last.
+    pub(crate) steps_at_rest: u32,
+    /// Crack length added since the tip divided last; infinite before it ever did [m].
+    pub(crate) since_division: f64,
+    /// Steps until it is measured again.
+    pub(crate) steps_to_look: u32,
     /// Crack length this tip has added so far [m].
     pub(crate) grown: f64,
     /// `grown` at the last frame [m].
@@ -34,6 +41,24 @@ pub(crate) struct Tip {
     pub(crate) measured: Measured,
     /// Direction of growth asked for by the stress, averaged over the last moments; at rest, not normalised. Zero: nothing known.
     pub(crate) heading: Vector,
+}
+
+impl Tip {
+    /// A tip that has not grown yet.
+    pub(crate) fn new(guide: Option<GuideWalk>) -> Self {
+        Self {
+            state: TipState::Resting,
+            guide,
+            ahead_of_limit: 0.0,
+            steps_at_rest: 0,
+            since_division: f64::INFINITY,
+            steps_to_look: 0,
+            grown: 0.0,
+            grown_at_frame: 0.0,
+            measured: Measured::default(),
+            heading: Vector::zeros(),
+        }
+    }
 }
 
 /// What was measured at a tip last. Symbols and units as in [`TipRecord`].
@@ -47,34 +72,6 @@ pub(crate) struct Measured {
     pub(crate) fracture_toughness: f64,
     pub(crate) contour_radius: f64,
     pub(crate) radius_shrunk: bool,
-}
-
-/// How far a tip has come along its guide.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub(crate) struct GuideWalk {
-    guide: Guide,
-    /// Arc length from the beginning of the guide [m].
-    walked: f64,
-}
-
-impl GuideWalk {
-    /// The place on the guide `step` beyond where the tip is [m], and whether the guide ends there.
-    pub(crate) fn ahead(&self, step: f64) -> (Point, bool) {
-        let mut left = self.walked + step;
-        for w in self.guide.points.windows(2) {
-            let length = (w[1] - w[0]).norm();
-            if left < length {
-                return (w[0] + (w[1] - w[0]) * (left / length), false);
-            }
-            left -= length;
-        }
-        (self.guide.points[self.guide.points.len() - 1], true)
-    }
-
-    /// Moves on by `step` [m].
-    pub(crate) fn walk(&mut self, step: f64) {
-        self.walked += step;
-    }
 }
 
 /// A polyline with no segment longer than `longest` [m]; its own points stay. The faces of a crack are known at its points only.
@@ -136,15 +133,7 @@ impl Crack {
         };
         let ends = [end_at(crack.points[0]), end_at(crack.points[crack.points.len() - 1])];
         let tip = |end: End, live: bool| {
-            (live && ends[slot(end)] == CrackEnd::Tip).then(|| Tip {
-                state: TipState::Resting,
-                guide: crack.guide(end).map(|g| GuideWalk { guide: g.clone(), walked: 0.0 }),
-                ready: 0.0,
-                grown: 0.0,
-                grown_at_frame: 0.0,
-                measured: Measured::default(),
-                heading: Vector::zeros(),
-            })
+            (live && ends[slot(end)] == CrackEnd::Tip).then(|| Tip::new(crack.guide(end).map(GuideWalk::new)))
         };
         Self {
             body: crack.body as u32,

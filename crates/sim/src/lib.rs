@@ -15,6 +15,7 @@ mod fields;
 mod formulation;
 mod grid;
 mod growth;
+mod guide;
 mod kernel;
 mod measure;
 mod particles;

@@ -45,7 +45,6 @@ impl Gauge<'_> {
         else {
             return Measured::default();
         };
-        let material = &self.scene.materials[nearest.material as usize];
         let elastic = &self.elastic[nearest.material as usize];
         let domain = |outer: f64| {
             domain_integrals(&zone.points, self.elastic, elastic, INNER_RADIUS * h, outer, settings.area_term)
@@ -81,17 +80,32 @@ impl Gauge<'_> {
             mode_2: split.mode_2,
             kink_angle,
             equivalent: decisive.equivalent(kink_angle),
-            fracture_toughness: material.fracture_toughness,
+            fracture_toughness: self.toughness_ahead(&cracks[crack], end),
             contour_radius: radius,
             radius_shrunk: radius < wanted,
         }
+    }
+
+    /// Fracture toughness of what the next increment would break [Pa·√m]: of the material in its middle, as strong as the scene makes it there.
+    fn toughness_ahead(&self, line: &Crack, end: End) -> f64 {
+        let half = 0.5 * self.scene.growth.increment * self.scene.cell_size;
+        let ahead = line.ahead(end, crate::crack::DIRECTION_LENGTH * self.scene.cell_size);
+        let place = line.tip_position(end) + ahead * half;
+        let body = &self.scene.bodies[line.body as usize];
+        let material = &self.scene.materials[body.material_at(place)];
+        material.fracture_toughness * self.scene.toughness_factor(line.body as usize, place)
     }
 
     /// Distance from a tip to the nearest thing that would spoil the integral: a ring, another crack, the other end of this one, a kink [m].
     fn free_radius(&self, cracks: &[Crack], crack: usize, end: End) -> f64 {
         let line = &cracks[crack];
         let tip = line.tip_position(end);
-        let mut free = crate::particles::distance_to_rings(&self.scene.bodies[line.body as usize].region, tip);
+        let body = &self.scene.bodies[line.body as usize];
+        let mut free = crate::particles::distance_to_rings(&body.region, tip);
+        for inclusion in &body.inclusions {
+            // The integrals hold for one material; across an interface they would count its image forces.
+            free = free.min(crate::particles::distance_to_rings(&inclusion.region, tip));
+        }
         for (index, other) in cracks.iter().enumerate() {
             if index != crack && other.body == line.body {
                 for w in other.points.windows(2) {

@@ -1,7 +1,7 @@
 //! Laying particles into bodies, and picking some of them.
 
 use crate::SimulationError;
-use fissure_scene::{Point, Region, Scene, Selection, bounds};
+use fissure_scene::{Body, Point, Region, Scene, Selection, bounds};
 use serde::{Deserialize, Serialize};
 
 /// The particles of all bodies at rest, in the order body, row, column. Shape: one entry per particle in every list.
@@ -53,12 +53,7 @@ impl Particles {
         };
         for (index, body) in scene.bodies.iter().enumerate() {
             let before = particles.len();
-            particles.fill_body(
-                index as u32,
-                &body.region,
-                body.material as u32,
-                scene.materials[body.material].density,
-            );
+            particles.fill_body(index as u32, body, scene);
             if particles.len() == before {
                 return Err(SimulationError::NoParticles { body: body.name.clone(), spacing: s });
             }
@@ -66,21 +61,22 @@ impl Particles {
         Ok(particles)
     }
 
-    fn fill_body(&mut self, body: u32, region: &Region, material: u32, density: f64) {
+    fn fill_body(&mut self, index: u32, body: &Body, scene: &Scene) {
         let s = self.spacing;
-        let (low, high) = region.bounds();
+        let (low, high) = body.region.bounds();
         let first = ((low - self.anchor) / s).map(|t| t.floor() as i32);
         let last = ((high - self.anchor) / s).map(|t| t.ceil() as i32);
         for j in first.y..=last.y {
             for i in first.x..=last.x {
                 let center = self.anchor + nalgebra::Vector2::new(f64::from(i) + 0.5, f64::from(j) + 0.5) * s;
-                if region.contains(center) {
+                if body.region.contains(center) {
+                    let material = body.material_at(center);
                     self.place.push([i, j]);
                     self.rest.push(center);
-                    self.body.push(body);
-                    self.material.push(material);
+                    self.body.push(index);
+                    self.material.push(material as u32);
                     self.volume.push(s * s);
-                    self.mass.push(s * s * density);
+                    self.mass.push(s * s * scene.materials[material].density);
                 }
             }
         }

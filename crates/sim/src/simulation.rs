@@ -1,16 +1,17 @@
 //! The simulation as its users see it: steps, what is measured at the tips, growth, frames.
 
-use crate::crack::{Crack, ENDS, Measured, slot};
+use crate::crack::{Crack, ENDS, slot};
 use crate::elastic::Elastic;
 use crate::formulation::{self, Choice};
-use crate::growth;
-use crate::measure::Gauge;
 use crate::particles::{self, Particles};
-use crate::solver::{Observed, Solver};
+use crate::solver::Solver;
 use crate::{SimulationError, pieces, saved};
-use fissure_scene::{CrackEnd, End, Energies, Formulation, Frame, Pose, Scene, TipRecord, TipState};
+use fissure_scene::{Energies, Formulation, Frame, Pose, Scene, TipRecord};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
+
+mod growing;
+mod relaxation;
 
 /// A simulation in progress.
 #[derive(Debug)]
@@ -100,9 +101,6 @@ const GROWTH_COURANT: f64 = 0.5;
 /// Energy a run may have beyond what it was given, as a part of what was exchanged. Kinetic and strain energy belong to moments half a step apart, so their
 /// sum ripples by a few per cent where short waves run; a run that fails gains without bound.
 const ENERGY_TOLERANCE: f64 = 0.1;
-
-/// Increments one tip may take in one step: with a step of 0.9 h/c_d and quarter cells, more would be faster than any wave.
-const MOST_INCREMENTS_PER_STEP: usize = 4;
 
 impl Simulation {
     /// Lays particles and grid for `scene`; the state is that of the first frame.
@@ -224,7 +222,7 @@ impl Simulation {
         let start = std::time::Instant::now();
         let mut taken = 0;
         while taken < 3 || (start.elapsed().as_secs_f64() < 0.2 && taken < 2000) {
-            simulation.one_step(interval / steps_per_frame)?;
+            simulation.one_step(interval / steps_per_frame, false)?;
             taken += 1;
         }
         let per_step = start.elapsed().as_secs_f64() / f64::from(taken);
@@ -336,7 +334,7 @@ impl Simulation {
         let steps = ((next - start) / self.largest_time_step()).ceil().max(1.0) as u64;
         let time_step = (next - start) / steps as f64;
         for step in 1..=steps {
-            self.one_step(time_step)?;
+            self.one_step(time_step, step == steps)?;
             // The frame's own time, free of accumulated rounding.
             self.state.time = if step == steps { next } else { start + time_step * step as f64 };
             let progress = Progress {
@@ -357,138 +355,8 @@ impl Simulation {
         Ok(true)
     }
 
-    /// One step and what it makes the cracks do.
-    fn one_step(&mut self, time_step: f64) -> Result<(), SimulationError> {
-        let Self { scene, elastic, solver, state, .. } = self;
-        let gauge = Gauge { scene, elastic };
-        let cracks = &state.cracks;
-        let live = live_tips(cracks);
-        let mut measured: Vec<Measured> = Vec::with_capacity(live.len());
-        let mut observe = |moment: &dyn Observed| {
-            for &(crack, end) in &live {
-                measured.push(gauge.measure(moment, cracks, crack, end));
-            }
-        };
-        solver.step(cracks, state.time, time_step, &mut observe)?;
-        state.steps += 1;
-        for (&(crack, end), m) in live.iter().zip(&measured) {
-            let heading = growth::heading(&state.cracks[crack], end, m, scene, elastic, time_step);
-            if let Some(tip) = &mut state.cracks[crack].tips[slot(end)] {
-                tip.measured = *m;
-                tip.heading = heading;
-            }
-        }
-        let time = state.time + time_step;
-        for (&(crack, end), &m) in live.iter().zip(&measured) {
-            self.grow(crack, end, m, time, time_step);
-        }
-        Ok(())
-    }
-
-    /// Lets one tip grow as far as the energy balance and the speed limit allow within a step that ends at `time`.
-    fn grow(&mut self, crack: usize, end: End, first: Measured, time: f64, time_step: f64) {
-        let limit = growth::speed_limit(&self.scene, &self.elastic);
-        let mut measured = first;
-        for increment in 0..MOST_INCREMENTS_PER_STEP {
-            let Some(tip) = &self.state.cracks[crack].tips[slot(end)] else { return };
-            if tip.ready > time || !growth::wants_to_grow(&self.state.cracks[crack], end, &measured, &self.scene) {
-                if increment == 0
-                    && let Some(tip) = &mut self.state.cracks[crack].tips[slot(end)]
-                    && tip.state == TipState::Growing
-                    && tip.ready + ARREST_STEPS * time_step < time
-                {
-                    tip.state = TipState::Arrested;
-                }
-                return;
-            }
-            let Some(advance) = growth::advance(&self.state.cracks, crack, end, &measured, &self.scene) else { return };
-            let line = &mut self.state.cracks[crack];
-            let length = advance.length(line.tip_position(end));
-            for &p in &advance.points {
-                line.push(end, p);
-            }
-            line.ends[slot(end)] = advance.end;
-            self.state.crack_energy += measured.j_integral.max(0.0) * length;
-            if let Some(tip) = &mut line.tips[slot(end)] {
-                tip.state = advance.state;
-                tip.grown += length;
-                tip.ready = tip.ready.max(time - time_step) + length / limit;
-                if let Some(guide) = &mut tip.guide {
-                    guide.walk(length);
-                }
-            }
-            if !advance.points.is_empty() {
-                self.solver.recut(&self.state.cracks, &[(crack, end)]);
-            }
-            if advance.end != CrackEnd::Tip {
-                return;
-            }
-            let gauge = Gauge { scene: &self.scene, elastic: &self.elastic };
-            measured = gauge.measure(self.solver.observed(), &self.state.cracks, crack, end);
-        }
-    }
-
     fn split_pieces(&mut self) {
         pieces::split(&self.particles, &self.state.cracks, self.scene.cell_size, &mut self.state.pieces);
-    }
-
-    /// Brings the state to rest under the loads of the present time; cracks do not grow.
-    ///
-    /// Dynamic relaxation (Underwood 1983): velocities are damped at twice the frequency of the motion that is left, from its Rayleigh quotient, so that
-    /// the slowest motion comes to rest as fast as it can. Where the formulation cannot tell that frequency, velocities are set to zero at every
-    /// peak of the kinetic energy instead. Stops when no more than `tolerance` of the strain energy is left as kinetic energy over a whole round, or
-    /// after `most_steps`. Returns the number of steps.
-    ///
-    /// # Errors
-    /// As [`Simulation::advance`].
-    pub fn relax(&mut self, tolerance: f64, most_steps: u64) -> Result<u64, SimulationError> {
-        let time_step = self.largest_time_step();
-        let time = self.state.time;
-        let (mut peak, mut round_peak) = (0.0, 0.0_f64);
-        let mut since = 0;
-        let mut steps = most_steps;
-        for step in 1..=most_steps {
-            self.solver.step(&self.state.cracks, time, time_step, &mut |_| ())?;
-            let kinetic = self.solver.kinetic_energy();
-            since += 1;
-            round_peak = round_peak.max(kinetic);
-            if since < RELAXATION_ROUND {
-                continue;
-            }
-            let rested = |kinetic: f64, solver: &dyn Solver| kinetic <= tolerance * solver.energies().strain;
-            if let Some(quotient) = self.solver.rayleigh_quotient() {
-                if rested(round_peak, &*self.solver) {
-                    steps = step;
-                    break;
-                }
-                self.solver.set_damping(2.0 * quotient.sqrt());
-                (round_peak, since) = (0.0, 0);
-            } else if kinetic < peak {
-                self.solver.stop();
-                if rested(peak, &*self.solver) {
-                    steps = step;
-                    break;
-                }
-                (peak, since) = (0.0, 0);
-            } else {
-                peak = kinetic.max(peak);
-            }
-        }
-        self.solver.set_damping(self.scene.solver.damping);
-        self.solver.stop();
-        self.measure_all();
-        Ok(steps)
-    }
-
-    /// Measures every live tip now.
-    pub fn measure_all(&mut self) {
-        let gauge = Gauge { scene: &self.scene, elastic: &self.elastic };
-        for (crack, end) in live_tips(&self.state.cracks) {
-            let m = gauge.measure(self.solver.observed(), &self.state.cracks, crack, end);
-            if let Some(tip) = &mut self.state.cracks[crack].tips[slot(end)] {
-                tip.measured = m;
-            }
-        }
     }
 
     /// The whole state at a frame boundary, for [`Simulation::restore`].
@@ -526,19 +394,4 @@ impl Simulation {
             stable_time_step: 0.0,
         })
     }
-}
-
-/// Steps between two looks of the dynamic relaxation at least: over fewer the ripple of the shortest waves shows instead of the motion that is left.
-const RELAXATION_ROUND: u32 = 12;
-
-/// A growing tip that has not moved for so many steps beyond its waiting time is at rest.
-const ARREST_STEPS: f64 = 50.0;
-
-fn live_tips(cracks: &[Crack]) -> Vec<(usize, End)> {
-    let live = |c: &Crack, end: End| c.tips[slot(end)].as_ref().is_some_and(|t| t.state.is_live());
-    cracks
-        .iter()
-        .enumerate()
-        .flat_map(|(i, c)| ENDS.into_iter().filter(move |&end| live(c, end)).map(move |end| (i, end)))
-        .collect()
 }

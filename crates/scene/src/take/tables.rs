@@ -85,7 +85,6 @@ fn state_word(state: TipState) -> &'static str {
         TipState::Arrested => "arrested",
         TipState::LeftBody => "left_body",
         TipState::MetCrack => "met_crack",
-        TipState::Branched => "branched",
         TipState::GuideEnded => "guide_ended",
     }
 }

@@ -27,13 +27,12 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 
 /// Order in which tip states are numbered.
-const STATES: [TipState; 7] = [
+const STATES: [TipState; 6] = [
     TipState::Resting,
     TipState::Growing,
     TipState::Arrested,
     TipState::LeftBody,
     TipState::MetCrack,
-    TipState::Branched,
     TipState::GuideEnded,
 ];
 

@@ -1,0 +1,48 @@
+//! Division of a tip into two.
+//!
+//! A tip that is given enough energy for two may divide: when J reaches a multiple of G_c = K_c²/E'. Where real cracks do so depends on the process zone,
+//! which a sharp crack does not have; so the multiple, the angle and the distance are the scene's.
+
+use super::heading::turned;
+use super::obstacle::first_obstacle;
+use super::{LAST_LIGAMENT, way};
+use crate::crack::{Crack, Measured, slot};
+use crate::elastic::Elastic;
+use fissure_scene::{End, Point, Scene};
+
+/// Length of new branches, in cells: as long as the smallest radius of an integral, so that the two tips can be told apart.
+const FIRST_LENGTH: f64 = 2.0;
+
+/// The points of the two branches of a tip, from the tip on and without it, left and right as seen along the crack; none when the tip does not divide.
+pub(crate) fn branches(
+    cracks: &[Crack],
+    index: usize,
+    end: End,
+    measured: &Measured,
+    scene: &Scene,
+    elastic: &[Elastic],
+) -> Option<[Vec<Point>; 2]> {
+    let branching = scene.growth.branching?;
+    let crack = &cracks[index];
+    let tip = crack.tips[slot(end)].as_ref()?;
+    let from = crack.tip_position(end);
+    let body = &scene.bodies[crack.body as usize];
+    let modulus = elastic[body.material_at(from)].effective_modulus;
+    let enough = branching.release_ratio * measured.fracture_toughness * measured.fracture_toughness / modulus;
+    let follows_exactly = tip.guide.as_ref().is_some_and(|g| g.strength() >= 1.0);
+    if follows_exactly || measured.j_integral < enough || tip.since_division < branching.spacing {
+        return None;
+    }
+    let toward = way(crack, end, measured, scene);
+    let h = scene.cell_size;
+    let step = scene.growth.increment * h;
+    let count = (FIRST_LENGTH * h / step).ceil() as usize;
+    let branch = |angle: f64| {
+        let along = turned(toward, angle);
+        let clear = from + along * (count as f64 * step + LAST_LIGAMENT * h);
+        first_obstacle(cracks, index, end, &body.region, from, clear)
+            .is_none()
+            .then(|| (1..=count).map(|k| from + along * (step * k as f64)).collect::<Vec<Point>>())
+    };
+    Some([branch(branching.half_angle)?, branch(-branching.half_angle)?])
+}

@@ -1,0 +1,57 @@
+//! Where a tip wants to go: by the stress, by a drawn path, or by both.
+
+use crate::crack::{Crack, DIRECTION_LENGTH, Measured, slot};
+use crate::elastic::Elastic;
+use fissure_scene::{End, Scene, TipState, Vector};
+
+/// Distance over which the direction of a running tip is averaged, in cells.
+const HEADING_CELLS: f64 = 2.0;
+
+/// The direction that the stress asks for now: unit vector, at rest.
+fn asked(crack: &Crack, end: End, measured: &Measured, scene: &Scene) -> Vector {
+    turned(crack.ahead(end, DIRECTION_LENGTH * scene.cell_size), measured.kink_angle)
+}
+
+/// `vector` turned counter-clockwise by `angle` [rad].
+pub(super) fn turned(vector: Vector, angle: f64) -> Vector {
+    let (sine, cosine) = angle.sin_cos();
+    Vector::new(cosine * vector.x - sine * vector.y, sine * vector.x + cosine * vector.y)
+}
+
+/// The heading of a tip after one more measurement, `time_step` [s] after the last one.
+///
+/// Every increment sends out waves, and the ratio of the modes swings with them at a period that is the lattice's, not the body's. A running tip follows
+/// the mean over the time that a shear wave takes for a few cells; a resting one has no waves of its own and starts as the stress is.
+pub(crate) fn heading(
+    crack: &Crack,
+    end: End,
+    measured: &Measured,
+    scene: &Scene,
+    elastic: &[Elastic],
+    time_step: f64,
+) -> Vector {
+    let now = asked(crack, end, measured, scene);
+    let Some(tip) = &crack.tips[slot(end)] else { return now };
+    if tip.state != TipState::Growing || tip.heading == Vector::zeros() {
+        return now;
+    }
+    let slowest = elastic.iter().map(Elastic::shear_wave_speed).fold(f64::INFINITY, f64::min);
+    let window = HEADING_CELLS * scene.cell_size / slowest;
+    tip.heading + (now - tip.heading) * (1.0 - (-time_step / window).exp())
+}
+
+/// The direction a tip would take without a guide (unit vector, at rest).
+pub(super) fn physical_way(crack: &Crack, end: End, measured: &Measured, scene: &Scene) -> Vector {
+    let tip = crack.tips[slot(end)].as_ref();
+    tip.and_then(|t| t.heading.try_normalize(0.0)).unwrap_or_else(|| asked(crack, end, measured, scene))
+}
+
+/// The direction a tip takes (unit vector, at rest): its heading, turned towards its guide by the strength of the guide.
+pub(super) fn way(crack: &Crack, end: End, measured: &Measured, scene: &Scene) -> Vector {
+    let physical = physical_way(crack, end, measured, scene);
+    let Some(guide) = crack.tips[slot(end)].as_ref().and_then(|t| t.guide.as_ref()) else { return physical };
+    match guide.drawn_direction(crack.tip_position(end), DIRECTION_LENGTH * scene.cell_size) {
+        Some(drawn) => turned(physical, guide.strength() * physical.perp(&drawn).atan2(physical.dot(&drawn))),
+        None => physical,
+    }
+}

@@ -1,0 +1,109 @@
+//! When and where a crack grows, and how it ends.
+//!
+//! A tip advances by one increment whenever K_eq(θ) reaches the toughness, amplitude from J. With the area term J is the energy release rate of the
+//! moving tip, so the speed follows from the energy balance by itself; a limit keeps it below a fraction of c_R. Direction: maximum hoop
+//! stress, a guide, or a blend of both. A guide with a schedule also decides when. Close to a ring or another crack the tip goes the rest of the way at
+//! once and ends exactly there.
+
+mod branching;
+mod heading;
+mod obstacle;
+mod speed;
+
+pub(crate) use branching::branches;
+pub(crate) use heading::heading;
+pub(crate) use speed::speed_limit;
+
+use crate::crack::{Crack, DIRECTION_LENGTH, Measured, slot};
+use fissure_scene::{CrackEnd, End, Point, Scene, TipState, Vector};
+use heading::{physical_way, way};
+use obstacle::first_obstacle;
+
+/// A ligament of less than this many cells breaks at once: no integral can be taken in it.
+const LAST_LIGAMENT: f64 = 1.5;
+
+/// What one tip does.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Advance {
+    /// New points, in the order they are reached [m].
+    pub(crate) points: Vec<Point>,
+    /// What the new end is.
+    pub(crate) end: CrackEnd,
+    /// State of the tip afterwards.
+    pub(crate) state: TipState,
+}
+
+/// Whether a tip grows at `time` [s], given what was measured.
+pub(crate) fn wants_to_grow(crack: &Crack, end: End, measured: &Measured, scene: &Scene, time: f64) -> bool {
+    let Some(tip) = &crack.tips[slot(end)] else { return false };
+    if !scene.growth.enabled || !tip.state.is_live() {
+        return false;
+    }
+    if let Some(due) = tip.guide.as_ref().and_then(|g| g.due(tip.grown, time)) {
+        let h = scene.cell_size;
+        return due.length >= scene.growth.increment * h || (due.is_last && due.length > 1e-9 * h);
+    }
+    // NaN compares false: nothing known, no growth.
+    let needed = measured.fracture_toughness;
+    equivalent(crack, end, measured, scene) >= needed && needed > 0.0
+}
+
+/// K_eq [Pa·√m] for the direction the tip would take: what was measured for the physical direction, times how much less the drawn one gets of it.
+fn equivalent(crack: &Crack, end: End, measured: &Measured, scene: &Scene) -> f64 {
+    if crack.tips[slot(end)].as_ref().is_none_or(|t| t.guide.is_none()) {
+        return measured.equivalent;
+    }
+    let ahead = crack.ahead(end, DIRECTION_LENGTH * scene.cell_size);
+    let split = crate::StressIntensity { mode_1: measured.mode_1.max(0.0), mode_2: measured.mode_2 };
+    let along = |toward: Vector| split.equivalent(ahead.perp(&toward).atan2(ahead.dot(&toward)));
+    let own = along(physical_way(crack, end, measured, scene));
+    if own > 0.0 { measured.equivalent * along(way(crack, end, measured, scene)) / own } else { 0.0 }
+}
+
+/// The next increment of a tip that wants to grow.
+pub(crate) fn advance(
+    cracks: &[Crack],
+    index: usize,
+    end: End,
+    measured: &Measured,
+    scene: &Scene,
+    time: f64,
+) -> Option<Advance> {
+    let crack = &cracks[index];
+    let tip = crack.tips[slot(end)].as_ref()?;
+    let h = scene.cell_size;
+    let mut step = scene.growth.increment * h;
+    let from = crack.tip_position(end);
+    let region = &scene.bodies[crack.body as usize].region;
+    // A schedule ends where it says, even within an increment.
+    if let Some(due) = tip.guide.as_ref().and_then(|g| g.due(tip.grown, time)).filter(|due| due.is_last) {
+        step = step.min(due.length);
+    }
+    if let Some(guide) = tip.guide.as_ref().filter(|g| g.strength() >= 1.0) {
+        // Along the guide, looking a ligament ahead.
+        let (target, ended) = guide.ahead(step);
+        let mut points = vec![target];
+        let mut last = from;
+        let pieces = (LAST_LIGAMENT / scene.growth.increment).ceil() as usize;
+        for piece in 1..=pieces + 1 {
+            let (next, _) = guide.ahead(step * piece as f64);
+            if let Some(hit) = first_obstacle(cracks, index, end, region, last, next) {
+                points.truncate(0);
+                points.extend((1..piece).map(|k| guide.ahead(step * k as f64).0));
+                return Some(hit.finish(points, from));
+            }
+            last = next;
+        }
+        if (target - from).norm() <= 1e-9 * h {
+            return Some(Advance { points: Vec::new(), end: CrackEnd::Tip, state: TipState::GuideEnded });
+        }
+        points.dedup();
+        let state = if ended { TipState::GuideEnded } else { TipState::Growing };
+        return Some(Advance { points, end: CrackEnd::Tip, state });
+    }
+    let toward = way(crack, end, measured, scene);
+    if let Some(hit) = first_obstacle(cracks, index, end, region, from, from + toward * (step + LAST_LIGAMENT * h)) {
+        return Some(hit.finish(Vec::new(), from));
+    }
+    Some(Advance { points: vec![from + toward * step], end: CrackEnd::Tip, state: TipState::Growing })
+}

@@ -1,0 +1,157 @@
+//! Cracks that are told where, when and how fast to go.
+
+use crate::common::{add_crack, plate, pull, rectangle, run};
+use fissure_scene::{Branching, Curve, Frame, Guide, Inclusion, Point, Scene, TipState, ToughnessKind, ToughnessPatch};
+use fissure_sim::{Elastic, Simulation};
+
+/// Where the crack begins and its tip is at first [m].
+const MOUTH: [f64; 2] = [0.0, 10.03];
+const TIP: [f64; 2] = [4.03, 10.03];
+
+/// A plate of 20 m with a straight edge crack, pulled well beyond its toughness. Frames are a fifth of the time a wave takes across.
+fn pulled() -> Scene {
+    let mut scene = plate([20.0, 20.0], 0.5, 4e-3);
+    scene.materials[0].fracture_toughness = 2e6;
+    add_crack(&mut scene, &[MOUTH, TIP]);
+    pull(&mut scene, 1e6);
+    scene
+}
+
+/// A path from the tip upwards at 45 degrees.
+fn guide(strength: f64, schedule: &[(f64, f64)]) -> Guide {
+    Guide {
+        name: "path".into(),
+        points: vec![Point::from(TIP), Point::new(10.03, 16.03)],
+        strength,
+        schedule: Curve { points: schedule.to_vec() },
+    }
+}
+
+fn after(scene: &Scene, frames: usize) -> Frame {
+    run(&mut Simulation::new(scene).unwrap(), frames).unwrap()
+}
+
+/// Slope of the new part of the first crack at its first two metres [rad].
+fn slope(frame: &Frame) -> f64 {
+    let from = Point::from(TIP);
+    let far = frame.cracks[0].rest.iter().find(|p| p.x > TIP[0] && (**p - from).norm() > 2.0).unwrap();
+    (far.y - from.y).atan2(far.x - from.x)
+}
+
+/// Truth: the ends of the blend. Without strength a guide changes nothing; with all of it the path is the drawn one; between, between.
+#[test]
+fn a_guide_turns_the_crack_by_its_strength() {
+    let free = after(&pulled(), 12);
+    let mut scene = pulled();
+    let mut guided = |strength: f64| {
+        scene.cracks[0].end_guide = Some(guide(strength, &[]));
+        after(&scene, 12)
+    };
+    assert_eq!(guided(0.0).cracks[0].rest, free.cracks[0].rest);
+    let half = slope(&guided(0.5)).to_degrees();
+    let whole = slope(&guided(1.0)).to_degrees();
+    assert!((whole - 45.0).abs() < 1e-6, "{whole}");
+    assert!((10.0..40.0).contains(&half), "{half}");
+}
+
+/// Truth: the schedule, to within an increment; and nothing more without load.
+#[test]
+fn a_schedule_says_when() {
+    let mut scene = pulled();
+    scene.loads.clear();
+    let rate = scene.frames.rate;
+    scene.cracks[0].end_guide = Some(guide(1.0, &[(2.0 / rate, 0.0), (12.0 / rate, 0.5)]));
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let increment = scene.growth.increment * scene.cell_size;
+    let length = 6.0 * 2.0_f64.sqrt();
+    for frame in 1..=15 {
+        let now = run(&mut simulation, 1).unwrap();
+        let grown = now.tips[0].length - (TIP[0] - MOUTH[0]);
+        let asked = length * 0.05 * f64::from((frame - 2).clamp(0, 10));
+        assert!((grown - asked).abs() <= increment + 1e-9, "frame {frame}: {grown} instead of {asked}");
+    }
+    assert!(
+        (simulation.frame().tips[0].length - (TIP[0] - MOUTH[0]) - 0.5 * length).abs() < 1e-6,
+        "ends where it says"
+    );
+}
+
+/// Truth: the limits themselves. Averaged over a frame a tip never runs faster than the scene or the material lets it.
+#[test]
+fn tips_keep_to_their_speed_limits() {
+    let mut scene = pulled();
+    let rayleigh = Elastic::new(&scene.materials[0], scene.plane).rayleigh_wave_speed();
+    let fastest = |scene: &Scene| {
+        let mut simulation = Simulation::new(scene).unwrap();
+        (0..10).map(|_| run(&mut simulation, 1).unwrap().tips[0].speed).fold(0.0, f64::max)
+    };
+    let step = scene.growth.increment * scene.cell_size * scene.frames.rate;
+    scene.materials[0].limiting_speed = Some(0.2 * rayleigh);
+    let found = fastest(&scene);
+    assert!(found > 0.1 * rayleigh && found <= 0.2 * rayleigh + step, "{found} of {rayleigh}");
+    scene.growth.speed_curve = Curve { points: vec![(0.0, 0.0)] };
+    assert_eq!(fastest(&scene), 0.0, "a factor of 0 holds all tips");
+}
+
+/// A tough band stops a crack that it meets, a weak one lets it through.
+#[test]
+fn toughness_varies_in_space() {
+    let end_in = |factor: f64| {
+        let mut scene = pulled();
+        let region = rectangle([8.0, 0.0], [10.0, 20.0]);
+        scene.toughness = vec![ToughnessPatch { body: None, kind: ToughnessKind::Region { region, factor } }];
+        after(&scene, 14).cracks[0].rest.iter().map(|p| p.x).fold(0.0, f64::max)
+    };
+    let stopped = end_in(1e3);
+    let increment = pulled().growth.increment * pulled().cell_size;
+    assert!((7.4..=8.0 + increment).contains(&stopped), "stopped at {stopped}");
+    assert!(end_in(0.9) > 12.0);
+}
+
+/// Truth: statics in series. Half of a bar is twice as stiff: under the same pull it stretches half as much, and the crack in a stiff strip opens less.
+#[test]
+fn an_inclusion_has_its_own_stiffness() {
+    let mut scene = plate([4.0, 20.0], 0.5, 4e-3);
+    let mut stiff = scene.materials[0].clone();
+    stiff.young_modulus *= 2.0;
+    stiff.name = "stiffer".into();
+    scene.materials.push(stiff);
+    scene.bodies[0].inclusions = vec![Inclusion { region: rectangle([-1.0, 10.0], [5.0, 21.0]), material: 1 }];
+    pull(&mut scene, 1e6);
+    let mut simulation = Simulation::new(&scene).unwrap();
+    simulation.relax(1e-10, 20_000).unwrap();
+    let particles = simulation.frame().particles;
+    let stretch = |low: f64| {
+        let inside = |p: &Point| (low..low + 4.0).contains(&p.y);
+        let values: Vec<f64> = particles
+            .rest
+            .iter()
+            .zip(&particles.deformation_gradient)
+            .filter(|(p, _)| inside(p))
+            .map(|(_, f)| f.m22 - 1.0)
+            .collect();
+        values.iter().sum::<f64>() / values.len() as f64
+    };
+    let ratio = stretch(3.0) / stretch(13.0);
+    assert!((ratio - 2.0).abs() < 0.02, "{ratio}");
+}
+
+/// A tip with energy for two divides: two live tips, apart by twice the half angle, no two divisions nearer than told.
+#[test]
+fn an_overdriven_tip_divides() {
+    let mut scene = pulled();
+    scene.materials[0].fracture_toughness = 1e6;
+    let half_angle = 0.5;
+    scene.growth.branching = Some(Branching { release_ratio: 2.0, half_angle, spacing: 6.0 });
+    let frame = after(&scene, 8);
+    assert!(frame.cracks.len() >= 2, "{} cracks", frame.cracks.len());
+    assert!(frame.tips.len() >= 2);
+    assert!(frame.tips.iter().any(|t| t.state == TipState::Growing || t.state == TipState::LeftBody));
+    let twin = &frame.cracks[1].rest;
+    let trunk = &frame.cracks[0].rest;
+    let at = trunk.iter().position(|p| *p == twin[0]).expect("the twin begins on the trunk");
+    let (left, right) = (trunk[at + 1] - trunk[at], twin[1] - twin[0]);
+    assert!((right.perp(&left).atan2(right.dot(&left)) - 2.0 * half_angle).abs() < 1e-9);
+    // A closed form for nothing: only that every number is one.
+    assert!(frame.particles.position.iter().all(|p| p.x.is_finite() && p.y.is_finite()));
+}
