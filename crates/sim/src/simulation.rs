@@ -323,6 +323,17 @@ impl Simulation {
     /// # Errors
     /// When the run becomes unstable; the frames so far stay valid.
     pub fn advance(&mut self, watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>) -> Result<bool, SimulationError> {
+        self.advance_observed(&mut |_, progress| watch(progress))
+    }
+
+    /// As [`Simulation::advance`]; `watch` also sees the state. What was measured at the tips belongs to the beginning of the step.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`].
+    pub fn advance_observed(
+        &mut self,
+        watch: &mut dyn FnMut(&Self, &Progress) -> ControlFlow<()>,
+    ) -> Result<bool, SimulationError> {
         for tip in self.state.cracks.iter_mut().flat_map(|c| c.tips.iter_mut().flatten()) {
             tip.grown_at_frame = tip.grown;
         }
@@ -345,7 +356,7 @@ impl Simulation {
                 live_tips: self.state.cracks.iter().map(Crack::live_tips).sum(),
                 crack_length: self.state.cracks.iter().map(Crack::length).sum(),
             };
-            if watch(&progress).is_break() {
+            if watch(self, &progress).is_break() {
                 return Ok(false);
             }
         }
