@@ -97,9 +97,9 @@ impl Problem {
         self
     }
 
-    /// Runs until `time` [s] and is looked at `samples` times.
-    pub(crate) fn until(mut self, time: f64, samples: usize) -> Self {
-        self.scene.frames = FrameSettings { first: 0, last: samples as i64, rate: samples as f64 / time };
+    /// Runs until `time` [s] in `frames` frames; the solver looks at its stability limit after each.
+    pub(crate) fn until(mut self, time: f64, frames: u32) -> Self {
+        self.scene.frames = FrameSettings { first: 0, last: i64::from(frames), rate: f64::from(frames) / time };
         self
     }
 

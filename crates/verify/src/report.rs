@@ -116,21 +116,21 @@ impl<'a> Tally<'a> {
         self.steps += steps;
     }
 
-    /// Runs to the end of the frames; `sample` looks at the state after each, and ends the run by breaking. It is also given the time to which what was
-    /// measured at the tips belongs [s]: the beginning of the last step.
+    /// Runs to the end of the frames; `sample` looks at the state after each step, and ends the run by breaking. It is also given the time to which what
+    /// was measured at the tips belongs [s]: the beginning of the step.
     pub(crate) fn run(
         &mut self,
         simulation: &mut Simulation,
         mut sample: impl FnMut(&Simulation, f64) -> ControlFlow<()>,
     ) -> Result<(), fissure_sim::SimulationError> {
-        let (mut time, mut steps) = (simulation.time(), simulation.steps());
-        while !simulation.is_finished() {
-            simulation.advance(&mut |_| ControlFlow::Continue(()))?;
-            let step = (simulation.time() - time) / (simulation.steps() - steps) as f64;
-            (time, steps) = (simulation.time(), simulation.steps());
-            if sample(simulation, time - step).is_break() {
-                break;
-            }
+        let mut measured = simulation.time();
+        let mut goes_on = true;
+        while goes_on && !simulation.is_finished() {
+            goes_on = simulation.advance_observed(&mut |now, _| {
+                let flow = sample(now, measured);
+                measured = now.time();
+                flow
+            })?;
         }
         self.count(simulation.particles(), simulation.steps());
         Ok(())

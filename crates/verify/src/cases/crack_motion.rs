@@ -1,13 +1,13 @@
 //! The crack-tip equation of motion: how far a crack runs that starts under a step of tension and takes the speed its energy balance asks for.
 //!
 //! Setup in [`super::stepped_plate`]. The toughness is K_I of the resting crack τ = 0.6 t_c after the step's arrival; the crack starts then and runs straight
-//! (`bending` is 0). Reference: g(v(t)) = τ/(t − t_c), Freund's universal function g, whatever the history (Freund 1990); integrated here. An own finite
+//! (`bending` is 0). Reference: g(v(t)) = τ/(t − t_c), g = A_I k² with Freund's universal function k, whatever the history (Freund 1990); integrated here. An own finite
 //! element solution driven with this v(t) gives G/G_c = 1.02 to 1.04. 40 cells are h = 0.05 m. Cells are counted over half the height of the plate.
 
 use super::stepped_plate::SteppedPlate;
 use crate::case::{Case, Options};
 use crate::report::{Expected, Tally};
-use fissure_sim::{Elastic, Simulation, SimulationError, universal_function};
+use fissure_sim::{Elastic, Simulation, SimulationError, crack_speed_factors, universal_function};
 use std::ops::ControlFlow;
 
 pub(crate) const CASE: Case = Case::new(
@@ -20,12 +20,17 @@ pub(crate) const CASE: Case = Case::new(
 /// τ/t_c.
 const DELAY: f64 = 0.6;
 
-/// v [m/s] at which the universal function g has the value `wanted`, 0 to 1: g falls from 1 at rest to 0 at c_R.
+/// g(v) = A_I(v) k(v)²: energy release rate of the moving crack as a part of that of a resting one at the same place and time.
+fn release(elastic: &Elastic, speed: f64) -> f64 {
+    crack_speed_factors(elastic, speed)[0] * universal_function(elastic, speed).powi(2)
+}
+
+/// v [m/s] at which g has the value `wanted`, 0 to 1: g falls from 1 at rest to 0 at c_R.
 fn speed_of(elastic: &Elastic, wanted: f64) -> f64 {
     let (mut low, mut high) = (0.0, elastic.rayleigh_wave_speed());
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        if universal_function(elastic, middle) > wanted {
+        if release(elastic, middle) > wanted {
             low = middle;
         } else {
             high = middle;
