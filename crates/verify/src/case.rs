@@ -73,6 +73,11 @@ pub const CASES: &[Case] = &[
     cases::crack_pairs::CASE,
     cases::step_load::CASE,
     cases::crack_motion::CASE,
+    cases::strip::CASE,
+    cases::impacted_notch::CASE,
+    cases::branching_plate::CASE,
+    cases::kink_angles::CASE,
+    cases::three_holes::CASE,
 ];
 
 /// The case of a name.

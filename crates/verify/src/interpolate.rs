@@ -25,3 +25,11 @@ pub(crate) fn linear(points: &[(f64, f64)], at: f64) -> f64 {
     let (x0, y0) = points[next - 1];
     y0 + (y1 - y0) * (at - x0) / (x1 - x0)
 }
+
+/// The numbers of a table of comma-separated values, line by line; lines that begin with `#` are headings.
+pub(crate) fn columns(text: &str) -> Vec<Vec<f64>> {
+    text.lines()
+        .filter(|line| !line.starts_with('#') && !line.trim().is_empty())
+        .map(|line| line.split(',').map(|cell| cell.trim().parse().unwrap_or(f64::NAN)).collect())
+        .collect()
+}

@@ -1,13 +1,18 @@
 //! One file per case: setup, reference, source.
 
+pub(crate) mod branching_plate;
 pub(crate) mod center_crack;
 pub(crate) mod crack_motion;
 pub(crate) mod crack_pairs;
 pub(crate) mod double_cantilever;
 pub(crate) mod edge_crack;
+pub(crate) mod impacted_notch;
+pub(crate) mod kink_angles;
 pub(crate) mod slanted_crack;
 pub(crate) mod step_load;
 mod stepped_plate;
+pub(crate) mod strip;
+pub(crate) mod three_holes;
 
 /// Kinetic energy at rest, as a part of the strain energy: from 1e-8 on, K_I of edge cracks changes by less than 1e-3.
 const REST: f64 = 1e-8;
