@@ -1,7 +1,8 @@
 //! First kink of slanted cracks: the angle a crack under mixed load turns by.
 //!
-//! The plates of the slanted cracks, all slants on one grid. The plate is brought to rest; then K_Ic is put 2 % below the K_eq of its tips, so that they grow, and
-//! the kink is taken over the first three cells. Reference: maximum hoop stress (Erdogan & Sih 1963), θ = 2 atan2(−2 K_II, K_I + √(K_I² + 8 K_II²)), with the
+//! The plates of the slanted cracks, all slants on one grid. The plate is brought to rest; then K_Ic is put 2 % below the K_eq of its tips, so that they grow.
+//! The kink is that of the first increment: beyond it the path bends at once, in proportion to the root of the length and to the stress along the crack
+//! (Cotterell & Rice 1980), for β = 15° by a quarter of the kink over three cells. Reference: maximum hoop stress (Erdogan & Sih 1963), θ = 2 atan2(−2 K_II, K_I + √(K_I² + 8 K_II²)), with the
 //! ratio K_II/K_I of a finite element solution of the plate. Cells are counted along half the crack.
 
 use super::REST;
@@ -18,9 +19,6 @@ pub(crate) const CASE: Case = Case::new(
     ("along half the crack", 16.0),
     compute,
 );
-
-/// Length over which the kink is taken, in cells.
-const RUN: f64 = 3.0;
 
 fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationError> {
     let cells = options.cells_or(CASE.cells.1).round();
@@ -46,13 +44,10 @@ fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationErr
         let mut simulation = Simulation::new(&scene)?;
         let steps = simulation.relax(REST, super::MOST_STEPS)?;
         tally.count(0, steps);
-        let lengths: Vec<f64> = simulation.tips().iter().map(|t| t.length).collect();
+        let drawn = [End::Start, End::End].map(|end| scene_tip(&scene, end));
         tally.run(&mut simulation, |now, _| {
-            if now.tips()[0].length >= lengths[0] + 2.0 * RUN + 1.0 {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
-            }
+            let moved = now.tips().iter().zip(&drawn).all(|(tip, from)| (tip.position - from).norm() > 0.1);
+            if moved { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })?;
         let frame = simulation.frame();
         let slant = degrees.to_radians();
@@ -75,17 +70,10 @@ fn scene_tip(scene: &fissure_scene::Scene, end: End) -> fissure_scene::Point {
     if end == End::Start { points[0] } else { points[points.len() - 1] }
 }
 
-/// Angle between `ahead` [rad] and the chord from `tip` to the place a run beyond it on the polyline that ends behind it [°]; NaN when it has not run so far.
+/// Angle between `ahead` [rad] and the chord from `tip` to the next point of the polyline [°]; NaN when there is none.
 fn kink(points: &[fissure_scene::Point], tip: fissure_scene::Point, ahead: f64) -> f64 {
     let Some(begin) = points.iter().position(|p| (p - tip).norm() < 1e-9) else { return f64::NAN };
-    let mut length = 0.0;
-    for w in points[begin..].windows(2) {
-        length += (w[1] - w[0]).norm();
-        if length >= RUN - 1e-9 {
-            let chord = w[1] - tip;
-            let turn = chord.y.atan2(chord.x) - ahead;
-            return turn.sin().atan2(turn.cos()).to_degrees();
-        }
-    }
-    f64::NAN
+    let Some(next) = points.get(begin + 1) else { return f64::NAN };
+    let turn = (next.y - tip.y).atan2(next.x - tip.x) - ahead;
+    turn.sin().atan2(turn.cos()).to_degrees()
 }
