@@ -67,12 +67,8 @@ impl Gauge<'_> {
             }
             ModeSplit::Interaction => interaction,
         };
-        // When: by the energy release rate, J. Where to: by the ratio of the modes.
-        let decisive = StressIntensity::from_opening(
-            j_integral,
-            Vector::new(split.mode_2, split.mode_1.max(0.0)),
-            elastic.effective_modulus,
-        );
+        let split = if settings.crack_contact { without_pressure(split) } else { split };
+        let decisive = decisive(j_integral, split, elastic.effective_modulus);
         let kink_angle = decisive.kink_angle(self.scene.growth.bending);
         Measured {
             j_integral,
@@ -196,6 +192,29 @@ impl Gauge<'_> {
     }
 }
 
+/// The modes of a crack whose faces cannot overlap: no K_I below zero.
+///
+/// Faces that press on each other carry the stress across, and nothing is singular about it; but their tractions work on the opening of Williams'
+/// fields, which the interaction integral leaves out, so that it finds the K_I that the pressure would have without contact. J and K_II do not
+/// feel it: closed faces have no jump across, and a pressure does no work on sliding.
+fn without_pressure(split: StressIntensity) -> StressIntensity {
+    StressIntensity { mode_1: split.mode_1.max(0.0), ..split }
+}
+
+/// The stress intensities that decide on growth. When: by the energy release rate, J. Where to: by the ratio of the modes.
+///
+/// Of a crack that is closed, only what its K_II accounts for counts: a crack gains nothing from the energy of compression.
+fn decisive(j_integral: f64, split: StressIntensity, effective_modulus: f64) -> StressIntensity {
+    if split.mode_1 > 0.0 {
+        return StressIntensity::from_opening(j_integral, Vector::new(split.mode_2, split.mode_1), effective_modulus);
+    }
+    let shear = StressIntensity { mode_1: 0.0, ..split };
+    let released = shear.energy_release_rate(effective_modulus);
+    // A NaN stays one: nothing known, no growth.
+    let available = if released < j_integral { released } else { j_integral };
+    StressIntensity::from_opening(available, Vector::new(split.mode_2, 0.0), effective_modulus)
+}
+
 /// Inertia within the contour, ∫ ρ (a_i u_i,1 − v_i v_i,1) dA [J/m²]: what makes J independent of the contour in dynamics. Source: Nakamura, Shih & Freund
 /// 1985; the thesis leaves it out.
 fn area_term(zone: &TipZone, radius: f64) -> f64 {
@@ -222,4 +241,40 @@ fn is_across(particle: &QuadraturePoint, place: Point, side: Side) -> bool {
     }
     let t = -place.y / span;
     place.x + t * (particle.place.x - place.x) < 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn k(mode_1: f64, mode_2: f64) -> StressIntensity {
+        StressIntensity { mode_1, mode_2 }
+    }
+
+    /// Truth: Irwin. K_I = 3, K_II = 4 and E' = 5 have J = 5; whatever J says, it is shared out as the modes are.
+    #[test]
+    fn an_open_crack_has_the_amplitude_of_j() {
+        let found = decisive(5.0, k(3.0, 4.0), 5.0);
+        assert!((found.mode_1 - 3.0).abs() < 1e-14 && (found.mode_2 - 4.0).abs() < 1e-14);
+        let found = decisive(20.0, k(3.0, -4.0), 5.0);
+        assert!((found.mode_1 - 6.0).abs() < 1e-14 && (found.mode_2 + 8.0).abs() < 1e-14);
+    }
+
+    /// Without J, or below zero, nothing is known and nothing grows; what compression stores is not released by shear.
+    #[test]
+    fn states_that_release_nothing_are_quiet() {
+        for j in [0.0, -7.0, f64::NAN] {
+            for modes in [k(3.0, 4.0), k(-3.0, 4.0), k(0.0, 0.0)] {
+                assert_eq!(decisive(j, modes, 5.0), k(0.0, 0.0), "{j} {modes:?}");
+            }
+        }
+        assert_eq!(decisive(7.0, k(0.0, 0.0), 5.0), k(0.0, 0.0));
+        assert_eq!(decisive(7.0, k(-6.0, 0.0), 5.0), k(0.0, 0.0));
+        // Pure shear, J = K_II²/E', and the same pressed together without contact, J = (K_I² + K_II²)/E'.
+        for (j, mode_1) in [(0.8, 0.0), (5.8, -5.0)] {
+            let found = decisive(j, k(mode_1, -2.0), 5.0);
+            assert!(found.mode_1 == 0.0 && (found.mode_2 + 2.0).abs() < 1e-14, "{found:?}");
+        }
+        assert_eq!(without_pressure(k(-3.0, 4.0)), k(0.0, 4.0));
+    }
 }

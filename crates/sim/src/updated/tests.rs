@@ -445,6 +445,40 @@ fn the_stable_step_is_stable_and_twice_it_is_not() {
     }
 }
 
+/// Truth: energy, as above, with a tip at every kind of place between two columns of particles: fields of next to no mass beside it.
+#[test]
+fn a_tip_anywhere_leaves_the_stable_step_stable() {
+    for kernel in [Kernel::Gimp, Kernel::Quadratic, Kernel::Cubic] {
+        let mut worst = 0.0_f64;
+        for behind in [1e-13, 1e-3, 0.03, 0.2, 0.5, 0.9] {
+            for height in [0.513, 0.525] {
+                let mut scene = free_body(rectangle([0.0, 0.0], [1.6, 1.0]), 0.05);
+                // Particles stand at x = 0.825; their domains begin at 0.8.
+                add_crack(&mut scene, &[[0.0, height], [0.8 + 0.05 * behind, height]]);
+                scene.solver.kernel = kernel;
+                scene.solver.transfer = Transfer::Flip(1.0);
+                scene.solver.tip_division = TipDivision::PartlyCut;
+                scene.solver.crack_contact = false;
+                let upper = Selection::Region(rectangle([0.0, 0.5], [0.8, 1.0]));
+                set_motion(&mut scene, upper, [0.02, 0.1], 0.0, [0.0; 2]);
+                let mut run = Run::new(&scene);
+                let energy = |run: &Run| run.solver.kinetic() + run.solver.strain_energy();
+                let first = energy(&run);
+                let time_step = 0.95 * run.solver.stable_time_step();
+                for _ in 0..200 {
+                    if run.solver.step(&run.cracks, run.time, time_step, &mut |_| ()).is_err() {
+                        worst = f64::INFINITY;
+                        break;
+                    }
+                    run.time += time_step;
+                }
+                worst = worst.max(energy(&run) / first);
+            }
+        }
+        assert!(worst < 1.01, "{kernel:?}: energy times {worst}");
+    }
+}
+
 /// Particle-steps per second on one thread, printed: `cargo test --release -p fissure-sim rates -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes time and wants a quiet machine"]

@@ -4,6 +4,8 @@
 //! every other band do not touch: all even bands at once, then all odd ones. The order of additions at a node is
 //! then the same for any number of threads.
 
+mod light;
+
 use super::stencils::{Cut, Nodes, PARALLEL_PARTICLES};
 use super::{MaterialPoint, Motion, PlasticPart, Updated};
 use crate::SimulationError;
@@ -259,6 +261,7 @@ impl Updated {
 
     /// v = p/m at the beginning, v + Δt f/m at the end (thesis eq. 6), with gravity and damping.
     pub(super) fn update_grid_velocities(&mut self, time_step: f64) {
+        self.relieve_light_fields();
         let decay = (-self.settings.damping * time_step).exp();
         let gravity = self.scene.gravity * time_step;
         let nodes = &mut self.nodes;

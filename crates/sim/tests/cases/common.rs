@@ -1,8 +1,9 @@
 //! Scenes built in code, and runs of them. Every `Scene` literal of these tests is here.
 
 use fissure_scene::{
-    Body, BoxSide, Crack, Curve, Formulation, Frame, FrameSettings, InitialVelocity, Load, LoadKind, Material,
+    Body, BoxSide, Crack, Curve, Formulation, Frame, FrameSettings, Guide, InitialVelocity, Load, LoadKind, Material,
     OutputSettings, PlaneState, Point, Region, Scene, Selection, SolverPreset, UpAxis, Vector, solver_preset,
+    updated_kernel,
 };
 use fissure_sim::{Simulation, SimulationError};
 use std::ops::ControlFlow;
@@ -66,6 +67,13 @@ pub(crate) fn plate(size: [f64; 2], cell_size: f64, frame_time: f64) -> Scene {
     }
 }
 
+/// The same scene in the updated Lagrangian formulation.
+pub(crate) fn updated(mut scene: Scene) -> Scene {
+    scene.solver.formulation = Formulation::Updated;
+    scene.solver.kernel = updated_kernel();
+    scene
+}
+
 /// Adds a crack through `points` [m]; ends inside the body are live tips.
 pub(crate) fn add_crack(scene: &mut Scene, points: &[[f64; 2]]) {
     scene.cracks.push(Crack {
@@ -77,6 +85,12 @@ pub(crate) fn add_crack(scene: &mut Scene, points: &[[f64; 2]]) {
         start_guide: None,
         end_guide: None,
     });
+}
+
+/// A path to follow through `points` [m].
+pub(crate) fn guide(points: &[[f64; 2]]) -> Guide {
+    let points = points.iter().map(|&p| Point::from(p)).collect();
+    Guide { name: "guide".into(), points, strength: 1.0, schedule: Curve::default() }
 }
 
 /// Adds a traction [Pa] on a side of the box.
@@ -110,4 +124,25 @@ pub(crate) fn run(simulation: &mut Simulation, count: usize) -> Result<Frame, Si
         simulation.advance(&mut |_| ControlFlow::Continue(()))?;
     }
     Ok(simulation.frame())
+}
+
+/// Checks that a frame holds finite numbers only.
+pub(crate) fn finite(name: &str, frame: &Frame) {
+    let particles = &frame.particles;
+    let vectors = particles.velocity.iter().chain(frame.outlines.iter().flat_map(|o| &o.velocity));
+    let vectors = vectors.chain(frame.cracks.iter().flat_map(|c| c.above_velocity.iter().chain(&c.below_velocity)));
+    assert!(vectors.flatten().all(|x| x.is_finite()), "{name}: velocities");
+    let points = particles.position.iter().chain(frame.outlines.iter().flat_map(|o| &o.position));
+    let points = points.chain(frame.cracks.iter().flat_map(|c| c.rest.iter().chain(&c.above).chain(&c.below)));
+    assert!(points.flat_map(|p| p.iter()).all(|x| x.is_finite()), "{name}: places");
+    let tensors = particles.deformation_gradient.iter().chain(&particles.cauchy_stress);
+    assert!(tensors.flatten().all(|x| x.is_finite()), "{name}: deformations and stresses");
+    for t in &frame.tips {
+        let numbers = [t.position.x, t.position.y, t.direction, t.j_integral, t.mode_1, t.mode_2, t.kink_angle];
+        let more = [t.equivalent, t.fracture_toughness, t.speed, t.length, t.contour_radius];
+        assert!(numbers.iter().chain(&more).all(|x| x.is_finite()), "{name}: {t:?}");
+        assert!(t.kink_angle.to_degrees().abs() < 70.53 && t.equivalent >= 0.0, "{name}: {t:?}");
+    }
+    let e = frame.energies;
+    assert!([e.kinetic, e.strain, e.external_work, e.crack].iter().all(|x| x.is_finite()), "{name}: {e:?}");
 }

@@ -4,4 +4,5 @@
 mod common;
 mod directing;
 mod scale;
+mod singular;
 mod threads;

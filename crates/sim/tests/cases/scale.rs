@@ -37,7 +37,7 @@ fn a_thousand_times_as_small_or_large_gives_the_same_path() {
         let scaled = path(factor);
         assert_eq!(scaled.len(), reference.len());
         let worst = scaled.iter().zip(&reference).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
-        // Measured: 4e-13 m on a plate of 20 m, over 443 steps.
-        assert!(worst < 1e-9, "{factor}: {worst:e}");
+        // Relative to the plate of 20 m; measured: 1e-10. Waves reflected at a running crack make round-off grow.
+        assert!(worst < 20.0 * 1e-9, "{factor}: {worst:e}");
     }
 }
