@@ -91,6 +91,11 @@ impl<'a> SimulationProgress<'a> {
         self.speak(false);
     }
 
+    /// Says something that happened on the way.
+    pub(crate) fn note(&self, message: &str) {
+        self.report.note(message);
+    }
+
     /// A frame is complete.
     pub(crate) fn frame(&mut self, frame: i64, tips: &[TipRecord]) {
         self.tips = busiest_tip(tips);

@@ -34,7 +34,7 @@ impl From<LoadError> for Failure {
 impl From<SimulationError> for Failure {
     fn from(error: SimulationError) -> Self {
         let exit = match error {
-            SimulationError::Unstable { .. } => Exit::Numerical,
+            SimulationError::Unstable { .. } | SimulationError::OutOfRange { .. } => Exit::Numerical,
             _ => Exit::Usage,
         };
         // These messages name their remedy.

@@ -135,6 +135,7 @@ impl Solve {
         // The state at the newest frame: what goes on after an interrupt in the middle of the next.
         let mut state = self.simulation.save();
         let mut state_written = Instant::now();
+        let mut formulation = self.simulation.formulation();
         while self.newest < self.last {
             let mut watch = |now: &fissure_sim::Progress| {
                 progress.step(self.newest + 1, now);
@@ -147,6 +148,13 @@ impl Solve {
                 return goes_on.map(|_| Outcome::Interrupted).map_err(Failure::from);
             }
             let frame = self.simulation.frame();
+            if self.simulation.formulation() != formulation {
+                formulation = self.simulation.formulation();
+                progress.note(&format!(
+                    "frame {}: material is deformed beyond the total Lagrangian formulation; the run goes on in the updated one",
+                    frame.number
+                ));
+            }
             self.writer.write_frame(&frame)?;
             self.newest = frame.number;
             progress.frame(frame.number, &frame.tips);

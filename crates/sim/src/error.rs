@@ -52,6 +52,21 @@ pub enum SimulationError {
         /// What happened, and the remedy.
         cause: String,
     },
+    /// Material is deformed more than the total Lagrangian formulation can follow.
+    #[error(
+        "at t = {time:e} s near ({x}, {y}) m {cause}; set `solver.formulation = \"updated\"`, or `solver.on_distortion = \"switch\"` to go on \
+         with it from there"
+    )]
+    OutOfRange {
+        /// When [s].
+        time: f64,
+        /// Where, x [m].
+        x: f64,
+        /// Where, y [m].
+        y: f64,
+        /// What happened.
+        cause: String,
+    },
     /// A saved state does not belong to this scene or version.
     #[error("the saved state cannot be used: {0}; start again without it")]
     BadState(String),

@@ -4,7 +4,7 @@ use crate::SimulationError;
 use crate::crack::Crack;
 use crate::elastic::Elastic;
 use crate::particles::Particles;
-use crate::solver::Solver;
+use crate::solver::{Handover, Solver};
 use crate::total::Total;
 use crate::updated::Updated;
 use fissure_scene::{Formulation, Kernel, LoadKind, Scene, bounds, updated_kernel};
@@ -40,14 +40,11 @@ pub(crate) fn choose(scene: &Scene, elastic: &[Elastic]) -> Choice {
 }
 
 /// The scene with the kernel its formulation needs: a bilinear one, the choice where particles never move through the grid, gives way to a smooth one
-/// where the scene left the formulation open and it turned out to be the updated one.
-pub(crate) fn settle(scene: &Scene, choice: &Choice) -> Scene {
+/// where the updated formulation is used without the scene having asked for it.
+pub(crate) fn settle(scene: &Scene, used: Formulation) -> Scene {
     let mut scene = scene.clone();
     let solver = &mut scene.solver;
-    if solver.formulation == Formulation::Auto
-        && choice.formulation == Formulation::Updated
-        && solver.kernel == Kernel::Bilinear
-    {
+    if solver.formulation != Formulation::Updated && used == Formulation::Updated && solver.kernel == Kernel::Bilinear {
         solver.kernel = updated_kernel();
     }
     scene
@@ -117,6 +114,19 @@ pub(crate) fn build(
         Formulation::Updated => Box::new(Updated::new(scene, particles, cracks)?),
         _ => Box::new(Total::new(scene, particles, cracks)?),
     })
+}
+
+/// Goes on in the updated formulation with the state of a total one.
+///
+/// # Errors
+/// As [`build`].
+pub(crate) fn switch(
+    scene: &Scene,
+    particles: Particles,
+    cracks: &[Crack],
+    handover: Handover,
+) -> Result<Box<dyn Solver>, SimulationError> {
+    Ok(Box::new(Updated::take_over(scene, particles, cracks, handover)?))
 }
 
 /// Builds the solver with a saved state.

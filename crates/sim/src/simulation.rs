@@ -12,6 +12,7 @@ use std::ops::ControlFlow;
 
 mod growing;
 mod relaxation;
+mod switching;
 
 /// A simulation in progress.
 #[derive(Debug)]
@@ -112,7 +113,7 @@ impl Simulation {
         let particles = Particles::fill(scene)?;
         let elastic: Vec<Elastic> = scene.materials.iter().map(|m| Elastic::new(m, scene.plane)).collect();
         let choice = formulation::choose(scene, &elastic);
-        let scene = &formulation::settle(scene, &choice);
+        let scene = &formulation::settle(scene, choice.formulation);
         let Choice { formulation, .. } = choice;
         let solver = formulation::build(formulation, scene, particles.clone(), &cracks)?;
         let mut simulation = Self {
@@ -248,6 +249,11 @@ impl Simulation {
         self.state.frame_number >= self.scene.frames.last
     }
 
+    /// The formulation in use; it changes in mid-run where the scene allows it.
+    pub fn formulation(&self) -> Formulation {
+        self.formulation
+    }
+
     /// Number of the current frame.
     pub fn frame_number(&self) -> i64 {
         self.state.frame_number
@@ -337,17 +343,40 @@ impl Simulation {
         for tip in self.state.cracks.iter_mut().flat_map(|c| c.tips.iter_mut().flatten()) {
             tip.grown_at_frame = tip.grown;
         }
+        let next = self.scene.frames.time(self.state.frame_number + 1);
+        self.state.interval = next - self.state.time;
+        while self.state.time < next {
+            if !self.run_to(next, watch)? {
+                return Ok(false);
+            }
+        }
+        self.watch_energy()?;
+        self.state.frame_number += 1;
+        self.split_pieces();
+        Ok(true)
+    }
+
+    /// Runs to the time `next` [s], or to where the formulation changes. `false`: `watch` has broken the run.
+    fn run_to(
+        &mut self,
+        next: f64,
+        watch: &mut dyn FnMut(&Self, &Progress) -> ControlFlow<()>,
+    ) -> Result<bool, SimulationError> {
         self.stable_time_step = self.solver.stable_time_step();
         self.check_time_step()?;
-        let next = self.scene.frames.time(self.state.frame_number + 1);
         let start = self.state.time;
-        self.state.interval = next - start;
         let steps = ((next - start) / self.largest_time_step()).ceil().max(1.0) as u64;
         let time_step = (next - start) / steps as f64;
         for step in 1..=steps {
-            self.one_step(time_step, step == steps)?;
+            let is_last = step == steps;
+            let done =
+                self.one_step(time_step, is_last).and_then(|()| if is_last { self.solver.check(next) } else { Ok(()) });
             // The frame's own time, free of accumulated rounding.
-            self.state.time = if step == steps { next } else { start + time_step * step as f64 };
+            self.state.time = if is_last { next } else { start + time_step * step as f64 };
+            if let Err(error) = done {
+                self.switch_formulation(error)?;
+                return Ok(true);
+            }
             let progress = Progress {
                 time: self.state.time,
                 steps: self.state.steps,
@@ -360,9 +389,6 @@ impl Simulation {
                 return Ok(false);
             }
         }
-        self.watch_energy()?;
-        self.state.frame_number += 1;
-        self.split_pieces();
         Ok(true)
     }
 
@@ -392,7 +418,7 @@ impl Simulation {
         }
         let particles = Particles::fill(scene)?;
         let elastic: Vec<Elastic> = scene.materials.iter().map(|m| Elastic::new(m, scene.plane)).collect();
-        let scene = &formulation::settle(scene, &formulation::choose(scene, &elastic));
+        let scene = &formulation::settle(scene, saved.formulation);
         let cracks = &saved.state.cracks;
         let solver = formulation::restore(saved.formulation, scene, particles.clone(), cracks, &saved.solver)?;
         Ok(Self {

@@ -86,6 +86,19 @@ pub(crate) struct SolverEnergies {
     pub(crate) external_work: f64,
 }
 
+/// What one formulation hands to the other in mid-run.
+#[derive(Debug, Clone)]
+pub(crate) struct Handover {
+    /// Of each particle: position [m], velocity [m/s], displacement gradient H = F − I [–].
+    pub(crate) particles: Vec<(Point, Vector, Matrix)>,
+    /// The cracks with both faces.
+    pub(crate) cracks: Vec<CrackFrame>,
+    /// The rings of all bodies.
+    pub(crate) outlines: Vec<OutlineFrame>,
+    /// Work done so far [J/m].
+    pub(crate) external_work: f64,
+}
+
 /// A formulation of the solver.
 pub(crate) trait Solver: std::fmt::Debug + Send {
     /// Largest stable time step for the present state [s].
@@ -103,6 +116,12 @@ pub(crate) trait Solver: std::fmt::Debug + Send {
         observe: &mut dyn FnMut(&dyn Observed),
     ) -> Result<(), SimulationError>;
 
+    /// Looks whether the state is sound at `time` [s].
+    ///
+    /// # Errors
+    /// When it is no longer finite or has left the range of the formulation.
+    fn check(&self, time: f64) -> Result<(), SimulationError>;
+
     /// Takes up the cracks as they are now: `changed` (crack, end) have got new points at rest since the last call, or new ends.
     fn recut(&mut self, cracks: &[Crack], changed: &[(usize, End)]);
 
@@ -111,6 +130,9 @@ pub(crate) trait Solver: std::fmt::Debug + Send {
 
     /// Kinetic energy [J/m]; cheap, unlike the rest of the budget.
     fn kinetic_energy(&self) -> f64;
+
+    /// The state for a solver of the other formulation to go on with; none where there is none.
+    fn hand_over(&mut self, cracks: &[Crack]) -> Option<Handover>;
 
     /// Sets all velocities to zero.
     fn stop(&mut self);

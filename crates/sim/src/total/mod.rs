@@ -25,7 +25,7 @@ use crate::fields::Fields;
 use crate::grid::Grid;
 use crate::kernel;
 use crate::particles::Particles;
-use crate::solver::{Observed, Solver, SolverEnergies};
+use crate::solver::{Handover, Observed, Solver, SolverEnergies};
 use boundary::{Constraint, PointForce};
 use contact::ContactPair;
 use cut::{CutParticles, Probe};
@@ -395,6 +395,10 @@ impl Solver for Total {
         self.watch(time + time_step)
     }
 
+    fn check(&self, time: f64) -> Result<(), SimulationError> {
+        self.check_range(time)
+    }
+
     fn recut(&mut self, cracks: &[Crack], changed: &[(usize, End)]) {
         self.take_up(cracks, changed);
     }
@@ -411,6 +415,24 @@ impl Solver for Total {
         self.state.velocity.iter_mut().for_each(|v| v.fill(0.0));
         self.acceleration.iter_mut().for_each(|a| a.fill(0.0));
         self.state.in_step = true;
+    }
+
+    fn hand_over(&mut self, cracks: &[Crack]) -> Option<Handover> {
+        // So that the momentum of the particles is that of the fields.
+        self.give_back();
+        let u = &self.state.displacement;
+        let particles = (0..self.particles.len())
+            .map(|p| {
+                let position = self.particles.rest[p] + self.value(p, u);
+                (position, self.value(p, &self.state.velocity), self.gradient(p, u))
+            })
+            .collect();
+        Some(Handover {
+            particles,
+            cracks: self.frames_of_cracks(cracks),
+            outlines: self.frames_of_outlines(),
+            external_work: self.state.external_work,
+        })
     }
 
     fn rayleigh_quotient(&self) -> Option<f64> {

@@ -4,7 +4,7 @@ use super::Updated;
 use super::stencils::stencil_node;
 use crate::crack::{Crack, slot};
 use crate::crossing::Side;
-use fissure_scene::{CrackEnd, End, Matrix, Point, Vector};
+use fissure_scene::{CrackEnd, CrackFrame, End, Matrix, OutlineFrame, Point, Vector};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -31,6 +31,13 @@ impl CrackNow {
             faces: [points.clone(), points],
             velocities: [still.clone(), still],
         }
+    }
+
+    /// Takes the place and the motion of the faces of `frame`, which has the same points.
+    pub(super) fn take_over(&mut self, frame: &CrackFrame) {
+        self.position = frame.above.iter().zip(&frame.below).map(|(a, b)| nalgebra::center(a, b)).collect();
+        self.faces = [frame.above.clone(), frame.below.clone()];
+        self.velocities = [frame.above_velocity.clone(), frame.below_velocity.clone()];
     }
 }
 
@@ -238,6 +245,23 @@ impl Updated {
             for end in 0..2 {
                 if crack.ends[end] == CrackEnd::Mouth {
                     self.open_mouth(crack, index, end);
+                }
+            }
+        }
+    }
+
+    /// Takes the place and the motion of the outlines of `frames`: vertices are known by their rest positions, those at mouths by the crack faces they end.
+    pub(super) fn take_over_outlines(&mut self, frames: &[OutlineFrame]) {
+        for (tracers, frame) in self.state.outlines.iter_mut().zip(frames) {
+            for tracer in tracers {
+                if let Some((crack, face, end)) = tracer.face {
+                    let now = &self.state.cracks[crack as usize];
+                    let k = if end == 0 { 0 } else { now.rest.len() - 1 };
+                    tracer.position = now.faces[face as usize][k];
+                    tracer.velocity = now.velocities[face as usize][k];
+                } else if let Some(k) = frame.rest.iter().position(|&p| p == tracer.rest) {
+                    tracer.position = frame.position[k];
+                    tracer.velocity = frame.velocity[k];
                 }
             }
         }

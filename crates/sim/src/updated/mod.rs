@@ -25,7 +25,7 @@ use crate::division::{CrackLine, Division, TipCut};
 use crate::elastic::Elastic;
 use crate::kernel;
 use crate::particles::Particles;
-use crate::solver::{Observed, Solver, SolverEnergies};
+use crate::solver::{Handover, Observed, Solver, SolverEnergies};
 use faces::{CrackNow, Tracer};
 use fissure_scene::{
     CrackFrame, End, Matrix, OutlineFrame, ParticleFrame, Point, Scene, SolverSettings, Transfer, Vector,
@@ -126,6 +126,32 @@ impl Updated {
         let mut solver = Self::around(scene, particles, state)?;
         solver.lay_outlines(cracks);
         solver.set_initial_velocities();
+        Ok(solver)
+    }
+
+    /// Goes on from a state of the other formulation.
+    ///
+    /// Every particle keeps its deformation, so strain energy stays to round-off (but for what ties at tips held), and takes the velocity of the grid where it
+    /// is, so momentum stays to round-off and kinetic energy can only fall, by the motion that is shorter than a particle's stencil.
+    ///
+    /// # Errors
+    /// When a load or support selects nothing.
+    pub(crate) fn take_over(
+        scene: &Scene,
+        particles: Particles,
+        cracks: &[Crack],
+        handover: Handover,
+    ) -> Result<Self, SimulationError> {
+        let mut solver = Self::new(scene, particles, cracks)?;
+        let state = &mut solver.state;
+        for (point, (position, velocity, gradient)) in state.points.iter_mut().zip(handover.particles) {
+            *point = MaterialPoint { position, velocity, elastic_gradient: gradient };
+        }
+        for (now, frame) in state.cracks.iter_mut().zip(&handover.cracks) {
+            now.take_over(frame);
+        }
+        solver.take_over_outlines(&handover.outlines);
+        solver.state.external_work = handover.external_work;
         Ok(solver)
     }
 
@@ -263,6 +289,11 @@ impl Solver for Updated {
         self.grid_to_particles(time, time_step)
     }
 
+    fn check(&self, _time: f64) -> Result<(), SimulationError> {
+        // Every step looks at what it moves.
+        Ok(())
+    }
+
     fn recut(&mut self, cracks: &[Crack], changed: &[(usize, End)]) {
         self.take_up(cracks, changed);
     }
@@ -279,6 +310,10 @@ impl Solver for Updated {
         self.state.points.iter_mut().for_each(|p| p.velocity = Vector::zeros());
         self.state.affine.fill(Matrix::zeros());
         self.motion.fill(Motion::default());
+    }
+
+    fn hand_over(&mut self, _cracks: &[Crack]) -> Option<Handover> {
+        None
     }
 
     fn rayleigh_quotient(&self) -> Option<f64> {
