@@ -6,7 +6,7 @@ use crate::formulation::{self, Choice};
 use crate::particles::{self, Particles};
 use crate::solver::Solver;
 use crate::{SimulationError, pieces, saved};
-use fissure_scene::{Energies, Formulation, Frame, Pose, Scene, TipRecord};
+use fissure_scene::{Energies, Formulation, Frame, Pose, Scene, TipRecord, Vector};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
@@ -300,6 +300,11 @@ impl Simulation {
             external_work: energies.external_work,
             crack: self.state.crack_energy,
         }
+    }
+
+    /// Linear [N s/m] and angular momentum about the origin [N s] now, per unit thickness.
+    pub fn momenta(&self) -> (Vector, f64) {
+        self.solver.momenta()
     }
 
     /// The current state as a frame.

@@ -143,6 +143,10 @@ pub(crate) trait Solver: std::fmt::Debug + Send {
     /// Lets velocities decay as exp(−rate t) from now on [1/s].
     fn set_damping(&mut self, rate: f64);
 
+    /// Linear [N s/m] and angular momentum about the origin [N s], per unit thickness. Where velocities belong to a moment half a step before the
+    /// displacements, that changes neither: it adds v × v = 0.
+    fn momenta(&self) -> (Vector, f64);
+
     /// Energies now.
     fn energies(&self) -> SolverEnergies;
 

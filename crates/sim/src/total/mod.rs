@@ -463,6 +463,18 @@ impl Solver for Total {
         self.settings.damping = rate;
     }
 
+    fn momenta(&self) -> (Vector, f64) {
+        let (u, v) = (&self.state.displacement, &self.state.velocity);
+        let (mut linear, mut angular) = (Vector::zeros(), 0.0);
+        for (d, &mass) in self.state.mass.iter().enumerate() {
+            let place = self.grid.position(self.state.fields.node(d)).coords + Vector::new(u[0][d], u[1][d]);
+            let momentum = Vector::new(v[0][d], v[1][d]) * mass;
+            linear += momentum;
+            angular += place.perp(&momentum);
+        }
+        (linear, angular)
+    }
+
     fn energies(&self) -> SolverEnergies {
         SolverEnergies {
             kinetic: self.kinetic(),

@@ -28,7 +28,7 @@ use crate::particles::Particles;
 use crate::solver::{Handover, Observed, Solver, SolverEnergies};
 use faces::{CrackNow, Tracer};
 use fissure_scene::{
-    CrackFrame, End, Matrix, OutlineFrame, ParticleFrame, Point, Scene, SolverSettings, Transfer, Vector,
+    CrackFrame, End, Kernel, Matrix, OutlineFrame, ParticleFrame, Point, Scene, SolverSettings, Transfer, Vector,
 };
 use plastic::PlasticPart;
 use serde::{Deserialize, Serialize};
@@ -323,6 +323,18 @@ impl Solver for Updated {
 
     fn set_damping(&mut self, rate: f64) {
         self.settings.damping = rate;
+    }
+
+    fn momenta(&self) -> (Vector, f64) {
+        // The affine part of APIC turns too: m D (C_21 − C_12), D = h²/4 (quadratic) or h²/3 (cubic) (Jiang et al. 2015).
+        let d = self.scene.cell_size.powi(2) / if self.settings.kernel == Kernel::Quadratic { 4.0 } else { 3.0 };
+        let (mut linear, mut angular) = (Vector::zeros(), 0.0);
+        for (p, (point, mass)) in self.state.points.iter().zip(&self.particles.mass).enumerate() {
+            let turning = self.state.affine.get(p).map_or(0.0, |c| d * (c.m21 - c.m12));
+            linear += point.velocity * *mass;
+            angular += mass * (point.position.coords.perp(&point.velocity) + turning);
+        }
+        (linear, angular)
     }
 
     fn energies(&self) -> SolverEnergies {

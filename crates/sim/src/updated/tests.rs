@@ -29,23 +29,12 @@ impl Run {
     }
 
     fn momentum(&self) -> Vector {
-        let s = &self.solver;
-        s.state.points.iter().zip(&s.particles.mass).fold(Vector::zeros(), |a, (p, m)| a + p.velocity * *m)
+        self.solver.momenta().0
     }
 
-    /// Around the origin; with the affine part of APIC, m D (C_21 − C_12), D = h²/4 (quadratic) or h²/3 (cubic) (Jiang et al. 2015).
+    /// Around the origin.
     fn angular_momentum(&self) -> f64 {
-        let s = &self.solver;
-        let d = s.scene.cell_size.powi(2) / if s.settings.kernel == Kernel::Quadratic { 4.0 } else { 3.0 };
-        s.state
-            .points
-            .iter()
-            .enumerate()
-            .map(|(p, point)| {
-                let c = s.state.affine.get(p).copied().unwrap_or_else(Matrix::zeros);
-                s.particles.mass[p] * (point.position.coords.perp(&point.velocity) + d * (c.m21 - c.m12))
-            })
-            .sum()
+        self.solver.momenta().1
     }
 
     fn largest_stress(&self) -> f64 {
