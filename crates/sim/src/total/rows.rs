@@ -90,12 +90,13 @@ fn cell_forces(count: usize, constants: RowConstants, u: [&[f64]; 8], corner: &m
                 let h21 = (1.0 - b) * bottom[1] + b * top[1];
                 let h12 = (1.0 - a) * left[0] + a * right[0];
                 let h22 = (1.0 - a) * left[1] + a * right[1];
-                // F − R without cancellation (see constitutive.rs); material beyond a half turn has left the range of this formulation.
+                // F − R without cancellation (see constitutive.rs), for any turn: 1 − cosine/r = sine²/(r (r + |cosine|)), or (r + |cosine|)/r when negative.
                 let cosine = 2.0 + h11 + h22;
                 let sine = h21 - h12;
                 let r_squared = cosine * cosine + sine * sine;
                 let r = r_squared.sqrt();
-                let stretch = sine * sine / (r_squared + r * cosine);
+                let sum = r + cosine.abs();
+                let stretch = if cosine > 0.0 { sine * sine } else { sum * sum } / (r * sum);
                 let turn = sine / r;
                 let volume = lambda * (h11 + h22 + (h11 * h22 - h12 * h21));
                 let p11 = two_mu * (h11 + stretch) + volume * (1.0 + h22);
@@ -123,6 +124,29 @@ fn cell_forces(count: usize, constants: RowConstants, u: [&[f64]; 8], corner: &m
 mod tests {
     use super::*;
     use fissure_scene::Matrix;
+
+    /// Truth: a rigid turn makes no stress, whatever its angle; next to half a turn r + cosine cancels.
+    #[test]
+    fn turned_rows_are_free_of_force() {
+        let (h, count) = (0.5, 8);
+        let constants = RowConstants { two_mu: 2.0, lambda: 1.5, inverse_cell_size: 1.0 / h };
+        for angle in [0.1, 3.0, std::f64::consts::PI - 1e-9, std::f64::consts::PI, 3.2, 5.0, 62.9] {
+            let (sine, cosine) = f64::sin_cos(angle);
+            let moved = |row: f64| -> [Vec<f64>; 2] {
+                let place = |i: usize| (i as f64 * h, row * h);
+                let x = |i| (cosine - 1.0) * place(i).0 - sine * place(i).1;
+                let y = |i| sine * place(i).0 + (cosine - 1.0) * place(i).1;
+                [(0..=count).map(x).collect(), (0..=count).map(y).collect()]
+            };
+            let ([lx, ly], [ux, uy]) = (moved(0.0), moved(1.0));
+            let u = NodeRows { lower: [&lx, &ly], upper: [&ux, &uy] };
+            let mut found = [0; 4].map(|_| vec![0.0; count + 1]);
+            let run = Run { first: 0, count, material: 0 };
+            add_forces(run, constants, &u, found.each_mut().map(|f| f.as_mut_slice()));
+            let most = found.iter().flatten().fold(0.0_f64, |m, f| m.max(f.abs()));
+            assert!(most < 1e-13, "{most} at {angle}");
+        }
+    }
 
     /// Truth: the sum over particles of −V P ∇w with the stress of `constitutive.rs`, cell by cell.
     #[test]
