@@ -72,12 +72,19 @@ pub const CASES: &[Case] = &[
     cases::double_cantilever::CASE,
     cases::crack_pairs::CASE,
     cases::step_load::CASE,
+    cases::moving_crack::CASE,
     cases::crack_motion::CASE,
     cases::strip::CASE,
     cases::impacted_notch::CASE,
     cases::branching_plate::CASE,
     cases::kink_angles::CASE,
     cases::three_holes::CASE,
+    cases::cantilever::CASE,
+    cases::bar_wave::CASE,
+    cases::spinning_disc::CASE,
+    cases::free_flight::FLIGHT,
+    cases::free_flight::TURNS,
+    cases::cantilever_growth::CASE,
 ];
 
 /// The case of a name.

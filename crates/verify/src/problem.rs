@@ -38,6 +38,16 @@ pub(crate) fn rectangle(low: (f64, f64), high: (f64, f64)) -> Region {
     Region { exterior: corners.map(|(x, y)| Point::new(x, y)).to_vec(), holes: Vec::new() }
 }
 
+/// A disc around the origin as a polygon of 256 corners [m]; one of them is exactly on its left.
+pub(crate) fn disc(radius: f64) -> Region {
+    let corner = |k: u16| {
+        let (sine, cosine) = (std::f64::consts::TAU * f64::from(k) / 256.0).sin_cos();
+        // The sine of π is not zero in floating point.
+        if k == 128 { Point::new(-radius, 0.0) } else { Point::new(radius * cosine, radius * sine) }
+    };
+    Region { exterior: (0..256).map(corner).collect(), holes: Vec::new() }
+}
+
 impl Problem {
     /// A body of one material, two by two particles in each cell of `cell_size` [m].
     pub(crate) fn new(name: &str, region: Region, material: Material, plane: PlaneState, cell_size: f64) -> Self {

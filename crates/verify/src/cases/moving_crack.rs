@@ -1,0 +1,69 @@
+//! A crack that is driven at a given speed: K_I before and after it starts.
+//!
+//! Setup in [`super::stepped_plate`]. The crack rests until 1.5 t_c and then runs at 1500 m/s (0.51 c_R), by a guide with a schedule. Reference (Freund 1990): G = g(v) K_I²/E' with
+//! the K_I the resting crack would have, g = A_I k²; that is, J falls by the factor 0.5165 at once. J is compared while the crack runs, from the time on at which
+//! its domain (4 cells) has been crossed by waves, to 2.4 t_c. Cells are counted over half the height of the plate.
+
+use super::stepped_plate::SteppedPlate;
+use crate::case::{Case, Options};
+use crate::report::Tally;
+use fissure_scene::{Curve, Guide, Point};
+use fissure_sim::{Simulation, SimulationError, crack_speed_factors, universal_function};
+use std::ops::ControlFlow;
+
+pub(crate) const CASE: Case = Case::new(
+    "moving-crack",
+    "energy release rate of a crack driven at 1500 m/s after a step of tension",
+    ("over half the height of the plate", 40.0),
+    compute,
+);
+
+/// Speed [m/s].
+const SPEED: f64 = 1500.0;
+/// Start and end of the comparison [t_c].
+const START: f64 = 1.5;
+const END: f64 = 2.4;
+
+fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationError> {
+    let cells = options.cells_or(CASE.cells.1).round();
+    for offset in [[0.125, 0.51], [0.375, 0.76]] {
+        tally.say(&format!("tip at {offset:?}"));
+        let plate = SteppedPlate { cell_size: 2.0 / cells, offset, toughness: 1e9 };
+        let elastic = plate.elastic();
+        let arrival = plate.arrival();
+        let (x, y) = plate.tip();
+        let length = SPEED * (END + 0.1 - START) * arrival;
+        let mut problem = plate.problem(END).growing();
+        problem.scene.cracks[0].end_guide = Some(Guide {
+            name: "line".into(),
+            points: vec![Point::new(x, y), Point::new(x + length, y)],
+            strength: 1.0,
+            schedule: Curve { points: vec![(START * arrival, 0.0), ((END + 0.1) * arrival, 1.0)] },
+        });
+        let mut simulation = Simulation::new(&problem.scene)?;
+        // Until waves have crossed the domain and come back.
+        let settled = START * arrival + 2.0 * 4.0 * plate.cell_size / elastic.shear_wave_speed();
+        let g = crack_speed_factors(&elastic, SPEED)[0] * universal_function(&elastic, SPEED).powi(2);
+        let release = |t: f64| plate.mode_1(t).powi(2) / elastic.effective_modulus;
+        let (mut before, mut moving, mut squares) = ((0.0, 0.0), (0.0, 0.0), 0.0);
+        tally.run(&mut simulation, |now, time| {
+            let ratio = now.tips()[0].j_integral / release(time);
+            if time > 1.3 * arrival && time < START * arrival {
+                before = (before.0 + ratio, before.1 + 1.0);
+            } else if time > settled {
+                moving = (moving.0 + ratio, moving.1 + 1.0);
+                squares += (ratio - g) * (ratio - g);
+            }
+            ControlFlow::Continue(())
+        })?;
+        let of = format!("tip at {offset:?}");
+        tally.relative(format!("mean J E'/K_I² at rest, {of}"), "", before.0 / before.1, 1.0, None);
+        tally.relative(format!("mean J E'/K_I² at 1500 m/s, {of}"), "", moving.0 / moving.1, g, 0.1);
+        let scatter = 100.0 * (squares / moving.1).sqrt() / g;
+        tally.absolute(format!("rms of J against the reference at 1500 m/s, {of}"), "%", scatter, 0.0, None);
+        let run = simulation.tips()[0].length - x;
+        let asked = SPEED * (END - START) * arrival;
+        tally.relative(format!("length run at the end, {of}"), "m", run, asked, None);
+    }
+    Ok(())
+}
