@@ -147,7 +147,10 @@ impl Updated {
         self.state.external_work += power * time_step;
     }
 
-    /// Prescribed velocities on nodes, as far as the mass of a node is held. Whether any node was.
+    /// Prescribed velocities on nodes that hold more mass of held particles than of others. Whether any node was.
+    ///
+    /// Dragging the other nodes along in part would do so again in every step, and damp the waves at the support: a plate pulled at one end, 81 steps,
+    /// gained 81 % of the work that way, 98 % this way.
     pub(super) fn hold_nodes(&mut self, time: f64, time_step: f64) -> bool {
         if self.held.is_empty() {
             return false;
@@ -172,14 +175,15 @@ impl Updated {
             let factor = support.curve.value(time + 0.5 * time_step);
             for &field in &touched {
                 let mass = self.nodes.mass[field];
-                let part = (held_mass[field] / mass).min(1.0);
-                for axis in 0..2 {
-                    let Some(speed) = support.velocity[axis] else { continue };
-                    let v = &mut self.nodes.after[axis][field];
-                    let change = (speed * factor - *v) * part;
-                    *v += change;
-                    // The force that does it moves along with the prescribed velocity.
-                    work += mass * change * speed * factor;
+                if 2.0 * held_mass[field] > mass {
+                    for axis in 0..2 {
+                        let Some(speed) = support.velocity[axis] else { continue };
+                        let v = &mut self.nodes.after[axis][field];
+                        let change = speed * factor - *v;
+                        *v += change;
+                        // The force that does it moves along with the prescribed velocity.
+                        work += mass * change * speed * factor;
+                    }
                 }
                 held_mass[field] = 0.0;
             }

@@ -2,7 +2,7 @@
 
 use fissure_scene::{
     Body, BoxSide, Crack, Curve, Formulation, Frame, FrameSettings, Guide, InitialVelocity, Load, LoadKind, Material,
-    OutputSettings, PlaneState, Point, Region, Scene, Selection, SolverPreset, UpAxis, Vector, solver_preset,
+    OutputSettings, PlaneState, Point, Region, Scene, Selection, SolverPreset, Support, UpAxis, Vector, solver_preset,
     updated_kernel,
 };
 use fissure_sim::{Simulation, SimulationError};
@@ -106,6 +106,11 @@ pub(crate) fn add_traction(scene: &mut Scene, side: BoxSide, traction: [f64; 2])
 pub(crate) fn pull(scene: &mut Scene, stress: f64) {
     add_traction(scene, BoxSide::Top, [0.0, stress]);
     add_traction(scene, BoxSide::Bottom, [0.0, -stress]);
+}
+
+/// Prescribes the velocity of a selection [m/s].
+pub(crate) fn hold(scene: &mut Scene, selection: Selection, velocity: [Option<f64>; 2]) {
+    scene.supports.push(Support { selection, velocity, curve: Curve::default() });
 }
 
 /// Adds an initial velocity [m/s] within `selection`.

@@ -2,7 +2,10 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod common;
+mod contour;
 mod directing;
+mod plane;
 mod scale;
 mod singular;
 mod threads;
+mod updated_solver;
