@@ -33,9 +33,10 @@ pub(crate) fn split(particles: &Particles, cracks: &[Crack], cell_size: f64, pie
         for step in [[1, 0], [0, 1]] {
             let place = particles.place[p];
             let Some(&q) = at.get(&[place[0] + step[0], place[1] + step[1]]) else { continue };
-            if particles.body[p] == particles.body[q]
-                && division.crossed(particles.rest[p], particles.rest[q]).is_empty()
-            {
+            // A particle exactly on a crack belongs to its upper side; as a node it would be beyond the crack from either side.
+            let crossed =
+                |from: usize, to: usize| !division.crossed(particles.rest[from], particles.rest[to]).is_empty();
+            if particles.body[p] == particles.body[q] && !(crossed(p, q) && crossed(q, p)) {
                 let (a, b) = (root(&mut parent, p), root(&mut parent, q));
                 // The lower number is the root, so a fragment is known by its first particle.
                 parent[a.max(b)] = a.min(b);
