@@ -103,6 +103,12 @@ const GROWTH_COURANT: f64 = 0.5;
 /// sum ripples by a few per cent where short waves run; a run that fails gains without bound.
 const ENERGY_TOLERANCE: f64 = 0.1;
 
+/// Steps between two looks at a stability limit that moves with the material.
+const STEPS_BETWEEN_LIMITS: u64 = 8;
+
+/// Steps are planned anew when the limit has changed by more than this part.
+const LIMIT_SLACK: f64 = 0.1;
+
 impl Simulation {
     /// Lays particles and grid for `scene`; the state is that of the first frame.
     ///
@@ -350,8 +356,9 @@ impl Simulation {
         }
         let next = self.scene.frames.time(self.state.frame_number + 1);
         self.state.interval = next - self.state.time;
+        let mut frame_steps = 0;
         while self.state.time < next {
-            if !self.run_to(next, watch)? {
+            if !self.run_to(next, &mut frame_steps, watch)? {
                 return Ok(false);
             }
         }
@@ -361,10 +368,12 @@ impl Simulation {
         Ok(true)
     }
 
-    /// Runs to the time `next` [s], or to where the formulation changes. `false`: `watch` has broken the run.
+    /// Runs to the time `next` [s], or to where the formulation or the length of the steps has to change. `frame_steps` counts the steps of the frame. `false`:
+    /// `watch` has broken the run.
     fn run_to(
         &mut self,
         next: f64,
+        frame_steps: &mut u64,
         watch: &mut dyn FnMut(&Self, &Progress) -> ControlFlow<()>,
     ) -> Result<bool, SimulationError> {
         self.stable_time_step = self.solver.stable_time_step();
@@ -372,8 +381,10 @@ impl Simulation {
         let start = self.state.time;
         let steps = ((next - start) / self.largest_time_step()).ceil().max(1.0) as u64;
         let time_step = (next - start) / steps as f64;
+        let frame_steps_total = *frame_steps + steps;
         for step in 1..=steps {
             let is_last = step == steps;
+            *frame_steps += 1;
             let done =
                 self.one_step(time_step, is_last).and_then(|()| if is_last { self.solver.check(next) } else { Ok(()) });
             // The frame's own time, free of accumulated rounding.
@@ -385,16 +396,25 @@ impl Simulation {
             let progress = Progress {
                 time: self.state.time,
                 steps: self.state.steps,
-                frame_steps: step,
-                frame_steps_total: steps,
+                frame_steps: *frame_steps,
+                frame_steps_total,
                 live_tips: self.state.cracks.iter().map(Crack::live_tips).sum(),
                 crack_length: self.state.cracks.iter().map(Crack::length).sum(),
             };
             if watch(self, &progress).is_break() {
                 return Ok(false);
             }
+            if !is_last && step.is_multiple_of(STEPS_BETWEEN_LIMITS) && self.limit_has_moved() {
+                return Ok(true);
+            }
         }
         Ok(true)
+    }
+
+    /// Whether the stable step is no longer what the steps were planned by.
+    fn limit_has_moved(&self) -> bool {
+        let change = self.solver.moving_time_step().map_or(1.0, |now| now / self.stable_time_step);
+        !(1.0 - LIMIT_SLACK..=1.0 + LIMIT_SLACK).contains(&change)
     }
 
     fn split_pieces(&mut self) {

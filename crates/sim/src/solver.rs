@@ -104,6 +104,11 @@ pub(crate) trait Solver: std::fmt::Debug + Send {
     /// Largest stable time step for the present state [s].
     fn stable_time_step(&self) -> f64;
 
+    /// The same where it changes with every step and is cheap to tell; none where only growth changes it.
+    fn moving_time_step(&self) -> Option<f64> {
+        None
+    }
+
     /// Goes from `time` to `time` + `time_step`. `observe` is called in mid-step, when displacements, velocities and accelerations belong to one moment.
     ///
     /// # Errors

@@ -261,6 +261,10 @@ impl Solver for Updated {
         self.largest_stable_step()
     }
 
+    fn moving_time_step(&self) -> Option<f64> {
+        Some(self.largest_stable_step())
+    }
+
     fn step(
         &mut self,
         cracks: &[Crack],
