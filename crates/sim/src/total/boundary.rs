@@ -2,6 +2,7 @@
 
 use super::Total;
 use super::cut::Probe;
+use super::refresh::Near;
 use crate::SimulationError;
 use crate::particles::{EdgeLine, selects};
 use fissure_scene::{LoadKind, Point, Selection, Vector};
@@ -27,6 +28,17 @@ pub(super) struct SurfaceNode {
     field: u32,
     /// How far the material goes beyond the node towards an obstacle [m]; negative when it ends before it.
     reach: f64,
+}
+
+/// The surface node of a field whose hat is filled with material to the given part; none within the material and far from it.
+fn surface_node(field: usize, part: f64, h: f64) -> Option<SurfaceNode> {
+    if part <= 0.0 || part > 0.999 {
+        return None;
+    }
+    // A half-plane of material whose edge lies d beyond the node fills the part ½ + d/h ∓ ½ (d/h)² of the node's hat; solved for d.
+    let beyond = |x: f64| h * (1.0 - (1.0 - x).max(0.0).sqrt());
+    let reach = if part >= 0.5 { beyond(2.0 * part - 1.0) } else { -beyond(1.0 - 2.0 * part) };
+    Some(SurfaceNode { field: field as u32, reach })
 }
 
 impl Total {
@@ -113,6 +125,15 @@ impl Total {
         }
     }
 
+    /// Lays the places of loads anew where something has changed.
+    pub(super) fn refresh_loads(&mut self, near: &Near) {
+        let mut loads = std::mem::take(&mut self.loads);
+        for force in loads.iter_mut().flatten().filter(|force| near.contains(force.probe.rest)) {
+            force.probe = self.probe(force.probe.rest, force.probe.nudged);
+        }
+        self.loads = loads;
+    }
+
     /// Adds the loads for the time `time` to the forces.
     pub(super) fn apply_loads(&mut self, time: f64) {
         for (load, forces) in self.scene.loads.iter().zip(&self.loads) {
@@ -152,19 +173,10 @@ impl Total {
     pub(super) fn constraints_of_supports(&self) -> Result<Vec<Constraint>, SimulationError> {
         let mut constraints = Vec::new();
         let bodies = self.body_of_fields();
-        for (support, s) in self.scene.supports.iter().enumerate() {
+        for support in 0..self.scene.supports.len() {
             let before = constraints.len();
             for field in 0..self.state.mass.len() {
-                if self.state.mass[field] == 0.0 {
-                    continue;
-                }
-                let place = self.grid.position(self.state.fields.node(field));
-                let slack = match s.selection {
-                    // Nodes on the side and, where the side is not on a grid line, those beyond it or nearer than half a cell.
-                    Selection::Edge { .. } => 0.499 * self.grid.cell_size,
-                    _ => 0.0,
-                };
-                if selects(&self.scene, &s.selection, place, bodies[field] as usize, slack) {
+                if self.holds(support, field, &bodies) {
                     constraints.push(Constraint { field: field as u32, support: support as u32 });
                 }
             }
@@ -173,6 +185,39 @@ impl Total {
             }
         }
         Ok(constraints)
+    }
+
+    /// Whether a support holds a field.
+    fn holds(&self, support: usize, field: usize, bodies: &[u32]) -> bool {
+        if self.state.mass[field] == 0.0 {
+            return false;
+        }
+        let selection = &self.scene.supports[support].selection;
+        let place = self.grid.position(self.state.fields.node(field));
+        let slack = match selection {
+            // Nodes on the side and, where the side is not on a grid line, those beyond it or nearer than half a cell.
+            Selection::Edge { .. } => 0.499 * self.grid.cell_size,
+            _ => 0.0,
+        };
+        selects(&self.scene, selection, place, bodies[field] as usize, slack)
+    }
+
+    /// [`Total::constraints_of_supports`] after a change: fields elsewhere are held as before.
+    pub(super) fn constraints_near(&self, near: &Near) -> Vec<Constraint> {
+        if self.scene.supports.is_empty() {
+            return Vec::new();
+        }
+        let bodies = self.body_of_fields();
+        let place = |field: usize| self.grid.position(self.state.fields.node(field));
+        let changed: Vec<usize> = (0..self.state.mass.len()).filter(|&field| near.contains(place(field))).collect();
+        let mut constraints: Vec<Constraint> =
+            self.constraints.iter().filter(|c| !near.contains(place(c.field as usize))).copied().collect();
+        for support in 0..self.scene.supports.len() {
+            let held = changed.iter().filter(|&&field| self.holds(support, field, &bodies));
+            constraints.extend(held.map(|&field| Constraint { field: field as u32, support: support as u32 }));
+        }
+        constraints.sort_unstable_by_key(|c| (c.support, c.field));
+        constraints
     }
 
     fn body_of_fields(&self) -> Vec<u32> {
@@ -195,17 +240,35 @@ impl Total {
         for p in 0..self.particles.len() {
             self.for_each_entry(p, |field, w, _| volume[field] += self.particles.volume[p] * w);
         }
-        let mut surface = Vec::new();
-        for (field, v) in volume.iter().enumerate() {
-            let part = v / (h * h);
-            if part <= 0.0 || part > 0.999 {
-                continue;
-            }
-            // A half-plane of material whose edge lies d beyond the node fills the part ½ + d/h ∓ ½ (d/h)² of the node's hat; solved for d.
-            let beyond = |x: f64| h * (1.0 - (1.0 - x).max(0.0).sqrt());
-            let reach = if part >= 0.5 { beyond(2.0 * part - 1.0) } else { -beyond(1.0 - 2.0 * part) };
-            surface.push(SurfaceNode { field: field as u32, reach });
+        volume.iter().enumerate().filter_map(|(field, v)| surface_node(field, v / (h * h), h)).collect()
+    }
+
+    /// [`Total::surface_nodes`] after a change: fields elsewhere are as before.
+    pub(super) fn surface_near(&self, near: &Near) -> Vec<SurfaceNode> {
+        if self.colliders.is_empty() {
+            return Vec::new();
         }
+        let h = self.grid.cell_size;
+        let place = |field: usize| self.grid.position(self.state.fields.node(field));
+        let mut surface: Vec<SurfaceNode> =
+            self.surface.iter().filter(|s| !near.contains(place(s.field as usize))).copied().collect();
+        // Every particle that has a weight at a node in the boxes, in the order of their numbers.
+        let mut particles: Vec<usize> = Vec::new();
+        for (low, high) in near.widened(2.0 * h) {
+            self.for_each_particle_in(low, high, |p| particles.push(p));
+        }
+        particles.sort_unstable();
+        particles.dedup();
+        let mut volume = std::collections::BTreeMap::<usize, f64>::new();
+        for p in particles {
+            self.for_each_entry(p, |field, w, _| {
+                if near.contains(place(field)) {
+                    *volume.entry(field).or_default() += self.particles.volume[p] * w;
+                }
+            });
+        }
+        surface.extend(volume.iter().filter_map(|(&field, v)| surface_node(field, v / (h * h), h)));
+        surface.sort_unstable_by_key(|s| s.field);
         surface
     }
 

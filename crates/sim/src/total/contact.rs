@@ -5,9 +5,10 @@
 //! at most μ times the normal one; an infinite μ sticks.
 
 use super::Total;
+use super::refresh::Near;
 use crate::crack::Crack;
 use crate::crossing::Side;
-use crate::division::facing;
+use crate::division::{CrossedSet, facing};
 use fissure_scene::Vector;
 
 /// Two fields of one node on the two sides of one crack.
@@ -28,29 +29,59 @@ impl Total {
     pub(super) fn contact_pairs(&self, cracks: &[Crack]) -> Vec<ContactPair> {
         let mut pairs = Vec::new();
         for (node, further) in self.state.fields.divided_nodes() {
-            let own = (Vec::new(), node as u32);
-            let all: Vec<_> =
-                std::iter::once(&own).chain(further).filter(|f| self.state.mass[f.1 as usize] > 0.0).collect();
-            for (k, first) in all.iter().enumerate() {
-                for second in &all[k + 1..] {
-                    let Some((crack, side)) = facing(&first.0, &second.0) else { continue };
-                    let (above, below) = if side == Side::Above { (first.1, second.1) } else { (second.1, first.1) };
-                    let Some(line) = cracks.get(crack as usize) else { continue };
-                    let place = self.grid.position(node);
-                    // Around a vertex both its segments are equally near, up to round-off: the first one counts.
-                    let clearly = 1e-9 * self.grid.cell_size;
-                    let (mut nearest, mut segment) = (f64::INFINITY, 0);
-                    for (s, w) in line.points.windows(2).enumerate() {
-                        let distance = crate::particles::distance_to_segment(place, w[0], w[1]);
-                        if distance < nearest - clearly {
-                            (nearest, segment) = (distance, s);
-                        }
-                    }
-                    pairs.push(ContactPair { above, below, crack, segment: segment as u32 });
-                }
+            self.add_pairs_of_node(node, further, cracks, &mut pairs);
+        }
+        pairs
+    }
+
+    /// [`Total::contact_pairs`] after a change: nodes elsewhere have the pairs they had.
+    pub(super) fn contacts_near(&self, near: &Near, cracks: &[Crack]) -> Vec<ContactPair> {
+        let node_of = |pair: &ContactPair| self.state.fields.node(pair.above as usize);
+        let mut pairs = Vec::with_capacity(self.contacts.len() + 32);
+        // Pairs are in the order of their nodes.
+        let mut before = self.contacts.as_slice();
+        for (node, further) in self.state.fields.divided_nodes() {
+            let skipped = before.partition_point(|pair| node_of(pair) < node);
+            let (own, rest) = before[skipped..].split_at(before[skipped..].partition_point(|p| node_of(p) == node));
+            before = rest;
+            if near.contains(self.grid.position(node)) {
+                self.add_pairs_of_node(node, further, cracks, &mut pairs);
+            } else {
+                let now = |p: &ContactPair| ContactPair { segment: near.segment_now(p.crack, p.segment), ..*p };
+                pairs.extend(own.iter().map(now));
             }
         }
         pairs
+    }
+
+    fn add_pairs_of_node(
+        &self,
+        node: usize,
+        further: &[(CrossedSet, u32)],
+        cracks: &[Crack],
+        pairs: &mut Vec<ContactPair>,
+    ) {
+        let own = (Vec::new(), node as u32);
+        let all: Vec<_> =
+            std::iter::once(&own).chain(further).filter(|f| self.state.mass[f.1 as usize] > 0.0).collect();
+        for (k, first) in all.iter().enumerate() {
+            for second in &all[k + 1..] {
+                let Some((crack, side)) = facing(&first.0, &second.0) else { continue };
+                let (above, below) = if side == Side::Above { (first.1, second.1) } else { (second.1, first.1) };
+                let Some(line) = cracks.get(crack as usize) else { continue };
+                let place = self.grid.position(node);
+                // Around a vertex both its segments are equally near, up to round-off: the first one counts.
+                let clearly = 1e-9 * self.grid.cell_size;
+                let (mut nearest, mut segment) = (f64::INFINITY, 0);
+                for (s, w) in line.points.windows(2).enumerate() {
+                    let distance = crate::particles::distance_to_segment(place, w[0], w[1]);
+                    if distance < nearest - clearly {
+                        (nearest, segment) = (distance, s);
+                    }
+                }
+                pairs.push(ContactPair { above, below, crack, segment: segment as u32 });
+            }
+        }
     }
 
     /// Current normal of a crack segment, from below to above: across the mean of the two faces.

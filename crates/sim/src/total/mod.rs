@@ -10,6 +10,7 @@ mod contact;
 mod cut;
 mod look;
 mod recut;
+mod refresh;
 mod rows;
 #[cfg(test)]
 mod tests;
@@ -202,6 +203,20 @@ impl Total {
         let lines: Vec<CrackLine> =
             cracks.iter().enumerate().map(|(i, c)| c.line(i, c.points.clone(), beyond)).collect();
         Division::new(&lines, scene.solver.tip_division, TipCut::TIED, scene.cell_size, scene.particle_spacing, reach)
+    }
+
+    /// Calls `visit` with every particle in a box, which may be a row larger, row by row.
+    fn for_each_particle_in(&self, low: Point, high: Point, mut visit: impl FnMut(usize)) {
+        let s = self.particles.spacing;
+        let first = ((low - self.particles.anchor) / s).map(|t| t.floor() as i32);
+        let last = ((high - self.particles.anchor) / s).map(|t| t.ceil() as i32);
+        for j in first.y..=last.y {
+            for i in first.x..=last.x {
+                if let Some(p) = self.lattice.at(i, j) {
+                    visit(p);
+                }
+            }
+        }
     }
 
     /// Whether uncut cells can go as rows.

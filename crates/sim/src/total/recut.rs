@@ -6,7 +6,7 @@
 
 use super::Total;
 use super::cut::Entry;
-use crate::SimulationError;
+use super::refresh::Near;
 use crate::crack::{Crack, slot};
 use fissure_scene::{CrackEnd, End, Point, Vector, bounds};
 
@@ -35,22 +35,8 @@ struct Change {
 }
 
 impl Total {
-    /// Everything that is made from the state, made anew.
-    ///
-    /// # Errors
-    /// When a load or support selects nothing.
-    pub(super) fn refresh(&mut self, cracks: &[Crack]) -> Result<(), SimulationError> {
-        self.refresh_masses();
-        self.loads = self.point_forces()?;
-        self.constraints = self.constraints_of_supports()?;
-        self.surface = self.surface_nodes();
-        self.contacts = self.contact_pairs(cracks);
-        self.ties = self.ties_of(cracks);
-        Ok(())
-    }
-
     /// Makes room for new fields.
-    fn resize_fields(&mut self) {
+    pub(super) fn resize_fields(&mut self) {
         let fields = self.state.fields.len();
         self.state.mass.resize(fields, 0.0);
         let vectors = [&mut self.state.displacement, &mut self.state.velocity, &mut self.acceleration, &mut self.force];
@@ -59,23 +45,15 @@ impl Total {
         }
     }
 
-    fn refresh_masses(&mut self) {
-        self.resize_fields();
-        self.inverse_mass.clear();
-        self.inverse_mass.extend(self.state.mass.iter().map(|&m| if m > 0.0 { 1.0 / m } else { 0.0 }));
-    }
-
     /// Takes up new crack points and new kinds of ends.
     pub(super) fn take_up(&mut self, cracks: &[Crack], changed: &[(usize, End)]) {
         self.division = Self::division_of(&self.scene, cracks);
+        let points_before: Vec<usize> = self.state.faces.iter().map(|faces| faces[0].len()).collect();
         let boxes: Vec<(Point, Point)> =
             changed.iter().map(|&(crack, end)| self.changed_box(&cracks[crack], end)).collect();
         self.recut_particles(cracks, &boxes);
         self.refresh_probes(cracks, changed, &boxes);
-        // Selections were checked when the solver was built.
-        if self.refresh(cracks).is_err() {
-            self.loads.clear();
-        }
+        self.refresh_near(&Near::new(boxes, cracks, changed, &points_before), cracks);
     }
 
     /// The region in which stencils may change.
@@ -91,20 +69,13 @@ impl Total {
     }
 
     fn recut_particles(&mut self, cracks: &[Crack], boxes: &[(Point, Point)]) {
-        let s = self.particles.spacing;
         let mut affected: Vec<usize> = Vec::new();
-        for (low, high) in boxes {
-            let first = ((low - self.particles.anchor) / s).map(|t| t.floor() as i32);
-            let last = ((high - self.particles.anchor) / s).map(|t| t.ceil() as i32);
-            for j in first.y..=last.y {
-                for i in first.x..=last.x {
-                    if let Some(p) = self.lattice.at(i, j)
-                        && self.division.is_near(self.particles.rest[p])
-                    {
-                        affected.push(p);
-                    }
+        for &(low, high) in boxes {
+            self.for_each_particle_in(low, high, |p| {
+                if self.division.is_near(self.particles.rest[p]) {
+                    affected.push(p);
                 }
-            }
+            });
         }
         affected.sort_unstable();
         affected.dedup();
