@@ -17,6 +17,7 @@ mod grid;
 mod growth;
 mod guide;
 mod kernel;
+mod look;
 mod measure;
 mod particles;
 mod pieces;

@@ -135,14 +135,14 @@ pub(crate) fn memory(particles: usize) -> u64 {
 
 /// One side of the box around a body (or around all).
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct EdgeLine {
+struct EdgeLine {
     side: fissure_scene::BoxSide,
     at: f64,
 }
 
 impl EdgeLine {
     /// The side of the box around `body`, or around all bodies.
-    pub(crate) fn of(scene: &Scene, side: fissure_scene::BoxSide, body: Option<usize>) -> Self {
+    fn of(scene: &Scene, side: fissure_scene::BoxSide, body: Option<usize>) -> Self {
         use fissure_scene::BoxSide::{Bottom, Left, Right, Top};
         let (mut low, mut high) = bounds(&[]);
         for (_, b) in scene.bodies.iter().enumerate().filter(|(i, _)| body.is_none_or(|b| b == *i)) {
@@ -159,7 +159,7 @@ impl EdgeLine {
     }
 
     /// Distance from the side into the box [m], negative outside.
-    pub(crate) fn depth(&self, point: Point) -> f64 {
+    fn depth(&self, point: Point) -> f64 {
         use fissure_scene::BoxSide::{Bottom, Left, Right, Top};
         match self.side {
             Left => point.x - self.at,
@@ -182,6 +182,18 @@ pub(crate) fn selects(scene: &Scene, selection: &Selection, place: Point, body: 
         Selection::Edge { side, body: of } => {
             of.is_none_or(|b| b == body) && EdgeLine::of(scene, *side, *of).depth(place) <= slack
         }
+    }
+}
+
+/// Whether the piece from `a` to `b` of a ring of `body` belongs to the edge that `selection` names.
+pub(crate) fn selects_piece(scene: &Scene, selection: &Selection, body: usize, a: Point, b: Point) -> bool {
+    let slack = 1e-6 * scene.cell_size;
+    match selection {
+        Selection::Edge { side, body: of } => {
+            let line = EdgeLine::of(scene, *side, *of);
+            of.is_none_or(|o| o == body) && line.depth(a).abs() <= slack && line.depth(b).abs() <= slack
+        }
+        _ => [a, b, nalgebra::center(&a, &b)].iter().all(|&p| selects(scene, selection, p, body, slack)),
     }
 }
 

@@ -4,7 +4,7 @@ use super::Total;
 use super::cut::Probe;
 use super::refresh::Near;
 use crate::SimulationError;
-use crate::particles::{EdgeLine, selects};
+use crate::particles::{selects, selects_piece};
 use fissure_scene::{LoadKind, Point, Selection, Vector};
 
 /// A force at a place of the material.
@@ -96,7 +96,7 @@ impl Total {
             for ring in body.region.rings() {
                 for i in 0..ring.len() {
                     let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
-                    if !self.edge_selected(selection, index, a, b) {
+                    if !selects_piece(&self.scene, selection, index, a, b) {
                         continue;
                     }
                     // One place in the middle of each half cell, so that every node gets the load of its hat.
@@ -112,17 +112,6 @@ impl Total {
             }
         }
         forces
-    }
-
-    fn edge_selected(&self, selection: &Selection, body: usize, a: Point, b: Point) -> bool {
-        let slack = 1e-6 * self.grid.cell_size;
-        match selection {
-            Selection::Edge { side, body: of } => {
-                let line = EdgeLine::of(&self.scene, *side, *of);
-                of.is_none_or(|o| o == body) && line.depth(a).abs() <= slack && line.depth(b).abs() <= slack
-            }
-            _ => [a, b, nalgebra::center(&a, &b)].iter().all(|&p| selects(&self.scene, selection, p, body, slack)),
-        }
     }
 
     /// Lays the places of loads anew where something has changed.

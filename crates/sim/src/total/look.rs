@@ -3,10 +3,10 @@
 use super::cut::Probe;
 use super::{FieldVectors, Total, left_of_tip};
 use crate::SimulationError;
-use crate::crack::{Crack, DIRECTION_LENGTH, chord_start, slot};
-use crate::crossing::Side;
+use crate::crack::{Crack, DIRECTION_LENGTH};
+use crate::look::{crack_frame, side_of, tip_of, turn};
 use crate::solver::{Observed, QuadraturePoint, TipZone};
-use fissure_scene::{CrackEnd, CrackFrame, End, Matrix, OutlineFrame, ParticleFrame, Point, Vector, orientation};
+use fissure_scene::{CrackFrame, End, Matrix, OutlineFrame, ParticleFrame, Point, Vector};
 
 /// A moment in the middle of a step: displacements and accelerations of the step's beginning, velocities half a step later.
 #[derive(Debug)]
@@ -52,20 +52,8 @@ impl Observed for Total {
             .zip(&faces[1])
             .map(|(above, below)| nalgebra::center(&self.moved(above), &self.moved(below)))
             .collect();
-        let over = DIRECTION_LENGTH * self.grid.cell_size;
-        let tip = if end == End::Start { now[0] } else { now[now.len() - 1] };
-        let ahead = tip - chord_start(&now, end, over);
-        let length = ahead.norm();
-        (tip, if length > 0.0 { ahead / length } else { cracks[crack].ahead(end, over) })
+        tip_of(&cracks[crack], &now, end, self.grid.cell_size)
     }
-}
-
-/// A turn by the angle whose tangent is `sine`/`cosine`, and what it differs from the identity, without cancellation.
-fn turn(cosine: f64, sine: f64) -> (Matrix, Matrix) {
-    let r = cosine.hypot(sine);
-    let (c, s) = if r > 0.0 { (cosine / r, sine / r) } else { (1.0, 0.0) };
-    let c_minus_one = if c > 0.0 { -s * s / (1.0 + c) } else { c - 1.0 };
-    (Matrix::new(c, -s, s, c), Matrix::new(c_minus_one, -s, s, c_minus_one))
 }
 
 impl Total {
@@ -107,7 +95,7 @@ impl Total {
             let velocity = self.value(p, &self.state.velocity) - acceleration * half_step;
             points.push(QuadraturePoint {
                 place: frame * arm,
-                side: self.side_of(line, end, self.particles.rest[p]),
+                side: side_of(&line.points, end, ahead, self.particles.rest[p]),
                 volume: self.particles.volume[p],
                 stress: into(back * crate::first_piola_stress(&h, e.mu, e.lambda)),
                 gradient: into(back * h + back_minus_one),
@@ -121,30 +109,6 @@ impl Total {
         }
         let (opening, opening_distance) = self.opening(line, crack, end, frame * back);
         TipZone { points, opening, opening_distance }
-    }
-
-    /// The face of the crack that a place sees, as a side of the tip frame: that of the nearest segment behind the tip, of the tip's own line ahead.
-    fn side_of(&self, line: &Crack, end: End, place: Point) -> Side {
-        let tip = line.tip_position(end);
-        let ahead = line.ahead(end, DIRECTION_LENGTH * self.grid.cell_size);
-        let mut sign = ahead.perp(&(place - tip));
-        if (place - tip).dot(&ahead) < 0.0 {
-            let n = line.points.len();
-            let mut nearest = f64::INFINITY;
-            // The last few segments are those within the window of an integral.
-            let segments: Vec<(Point, Point)> = match end {
-                End::End => (n.saturating_sub(40).max(1)..n).map(|k| (line.points[k - 1], line.points[k])).collect(),
-                End::Start => (1..n.min(40)).map(|k| (line.points[k], line.points[k - 1])).collect(),
-            };
-            for (a, b) in segments {
-                let distance = crate::particles::distance_to_segment(place, a, b);
-                if distance < nearest {
-                    nearest = distance;
-                    sign = orientation(a, b, place);
-                }
-            }
-        }
-        if sign >= 0.0 { Side::Above } else { Side::Below }
     }
 
     /// Opening of the faces some way behind a tip, in the tip frame, and that distance.
@@ -370,35 +334,11 @@ impl Total {
     }
 
     pub(super) fn frames_of_cracks(&self, cracks: &[Crack]) -> Vec<CrackFrame> {
-        let mut frames = Vec::new();
-        for (index, (crack, faces)) in cracks.iter().zip(&self.state.faces).enumerate() {
-            let side = |k: usize| -> (Vec<Point>, Vec<Vector>) {
-                faces[k].iter().map(|p| (self.moved(p), p.value(&self.state.velocity))).unzip()
-            };
-            let (mut above, mut above_velocity) = side(0);
-            let (mut below, mut below_velocity) = side(1);
-            for end in crate::crack::ENDS {
-                if crack.ends[slot(end)] == CrackEnd::Tip {
-                    // The faces meet at a tip.
-                    let k = if end == End::Start { 0 } else { above.len() - 1 };
-                    let middle = nalgebra::center(&above[k], &below[k]);
-                    let velocity = (above_velocity[k] + below_velocity[k]) * 0.5;
-                    (above[k], below[k]) = (middle, middle);
-                    (above_velocity[k], below_velocity[k]) = (velocity, velocity);
-                }
-            }
-            frames.push(CrackFrame {
-                crack: index as u32,
-                body: crack.body,
-                rest: crack.points.clone(),
-                above,
-                below,
-                above_velocity,
-                below_velocity,
-                start: crack.ends[0],
-                end: crack.ends[1],
-            });
-        }
-        frames
+        let frame = |(index, (crack, faces)): (usize, (&Crack, &[Vec<Probe>; 2]))| {
+            let places = faces.each_ref().map(|face| face.iter().map(|p| self.moved(p)).collect());
+            let velocities = faces.each_ref().map(|face| face.iter().map(|p| p.value(&self.state.velocity)).collect());
+            crack_frame(index, crack, places, velocities)
+        };
+        cracks.iter().zip(&self.state.faces).enumerate().map(frame).collect()
     }
 }

@@ -3,7 +3,7 @@
 use super::{MaterialPoint, Updated};
 use crate::SimulationError;
 use crate::collider::PlacedObstacle;
-use crate::particles::{EdgeLine, selects};
+use crate::particles::{selects, selects_piece};
 use fissure_scene::{LoadKind, Matrix, Point, Selection, Vector};
 
 impl Updated {
@@ -45,7 +45,7 @@ impl Updated {
             for ring in body.region.rings() {
                 for i in 0..ring.len() {
                     let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
-                    if !self.edge_selected(selection, index, a, b) {
+                    if !selects_piece(&self.scene, selection, index, a, b) {
                         continue;
                     }
                     let pieces = ((b - a).norm() / self.particles.spacing).round().max(1.0) as usize;
@@ -58,17 +58,6 @@ impl Updated {
             }
         }
         forces
-    }
-
-    fn edge_selected(&self, selection: &Selection, body: usize, a: Point, b: Point) -> bool {
-        let slack = 1e-6 * self.scene.cell_size;
-        match selection {
-            Selection::Edge { side, body: of } => {
-                let line = EdgeLine::of(&self.scene, *side, *of);
-                of.is_none_or(|o| o == body) && line.depth(a).abs() <= slack && line.depth(b).abs() <= slack
-            }
-            _ => [a, b, nalgebra::center(&a, &b)].iter().all(|&p| selects(&self.scene, selection, p, body, slack)),
-        }
     }
 
     /// The particles that each support holds, chosen at rest.

@@ -1,10 +1,10 @@
 //! Looking at the solver: what is around a tip, what a frame holds.
 
 use super::Updated;
-use crate::crack::{Crack, DIRECTION_LENGTH, chord_start, slot};
-use crate::crossing::Side;
+use crate::crack::Crack;
+use crate::look::{crack_frame, side_of, tip_of, turn};
 use crate::solver::{Observed, QuadraturePoint, TipZone};
-use fissure_scene::{CrackEnd, CrackFrame, End, Matrix, OutlineFrame, ParticleFrame, Point, Vector, orientation};
+use fissure_scene::{CrackFrame, End, Matrix, OutlineFrame, ParticleFrame, Point, Vector};
 
 /// A moment in the middle of a step: positions, deformations and accelerations of the step's beginning; velocities on the grid are half a step ahead and
 /// taken back by half the acceleration.
@@ -16,9 +16,6 @@ pub(super) struct Moment<'a> {
 
 /// Behind a tip, in cells, where the opening is taken. 1 to 3 cells: nearer, the tip's own discretisation shows; farther, the next term of the series.
 const OPENING_DISTANCE: f64 = 1.5;
-
-/// Segments behind a tip that are looked at for the side of a place; more than any integral reaches.
-const SEGMENTS_BEHIND: usize = 40;
 
 impl Observed for Moment<'_> {
     fn tip_zone(&self, cracks: &[Crack], crack: usize, end: End, radius: f64) -> TipZone {
@@ -37,21 +34,8 @@ impl Observed for Updated {
     }
 
     fn tip_now(&self, cracks: &[Crack], crack: usize, end: End) -> (Point, Vector) {
-        let points = &self.state.cracks[crack].position;
-        let over = DIRECTION_LENGTH * self.scene.cell_size;
-        let tip = if end == End::Start { points[0] } else { points[points.len() - 1] };
-        let ahead = tip - chord_start(points, end, over);
-        let length = ahead.norm();
-        (tip, if length > 0.0 { ahead / length } else { cracks[crack].ahead(end, over) })
+        tip_of(&cracks[crack], &self.state.cracks[crack].position, end, self.scene.cell_size)
     }
-}
-
-/// A turn by the angle whose tangent is `sine`/`cosine`, and what it differs from the identity, without cancellation.
-fn turn(cosine: f64, sine: f64) -> (Matrix, Matrix) {
-    let r = cosine.hypot(sine);
-    let (c, s) = if r > 0.0 { (cosine / r, sine / r) } else { (1.0, 0.0) };
-    let c_minus_one = if c > 0.0 { -s * s / (1.0 + c) } else { c - 1.0 };
-    (Matrix::new(c, -s, s, c), Matrix::new(c_minus_one, -s, s, c_minus_one))
 }
 
 impl Updated {
@@ -90,7 +74,7 @@ impl Updated {
             let elastic = &point.elastic_gradient;
             points.push(QuadraturePoint {
                 place: frame * (point.position - tip),
-                side: self.side_of(crack, end, tip, ahead, point.position),
+                side: side_of(&self.state.cracks[crack].position, end, ahead, point.position),
                 volume: self.particles.volume[p] * ratio,
                 stress: into(crate::kirchhoff_stress(elastic, mu, lambda) / ratio),
                 gradient: into(gradient),
@@ -113,29 +97,6 @@ impl Updated {
             End::End => (0..n).rev().collect(),
             End::Start => (0..n).collect(),
         }
-    }
-
-    /// The face of the crack that a place sees, as a side of the tip frame: that of the nearest segment behind the tip, of the tip's own line ahead.
-    fn side_of(&self, crack: usize, end: End, tip: Point, ahead: Vector, place: Point) -> Side {
-        let points = &self.state.cracks[crack].position;
-        let mut sign = ahead.perp(&(place - tip));
-        if (place - tip).dot(&ahead) < 0.0 {
-            let n = points.len();
-            let mut nearest = f64::INFINITY;
-            for k in 0..(n - 1).min(SEGMENTS_BEHIND) {
-                // Towards the tip, so that the left side is that of e2.
-                let (a, b) = match end {
-                    End::End => (points[n - 2 - k], points[n - 1 - k]),
-                    End::Start => (points[k + 1], points[k]),
-                };
-                let distance = crate::particles::distance_to_segment(place, a, b);
-                if distance < nearest {
-                    nearest = distance;
-                    sign = orientation(a, b, place);
-                }
-            }
-        }
-        if sign >= 0.0 { Side::Above } else { Side::Below }
     }
 
     /// Opening of the faces some way behind a tip, left minus right as seen from the tip looking ahead [m], and that distance [m].
@@ -221,32 +182,11 @@ impl Updated {
     }
 
     pub(super) fn frames_of_cracks(&self, cracks: &[Crack]) -> Vec<CrackFrame> {
-        let mut frames = Vec::new();
-        for (index, (crack, now)) in cracks.iter().zip(&self.state.cracks).enumerate() {
-            let [mut above, mut below] = now.faces.clone();
-            let [mut above_velocity, mut below_velocity] = now.velocities.clone();
-            for end in crate::crack::ENDS {
-                if crack.ends[slot(end)] == CrackEnd::Tip {
-                    // The faces meet at a tip.
-                    let k = if end == End::Start { 0 } else { above.len() - 1 };
-                    let middle = nalgebra::center(&above[k], &below[k]);
-                    let velocity = (above_velocity[k] + below_velocity[k]) * 0.5;
-                    (above[k], below[k]) = (middle, middle);
-                    (above_velocity[k], below_velocity[k]) = (velocity, velocity);
-                }
-            }
-            frames.push(CrackFrame {
-                crack: index as u32,
-                body: crack.body,
-                rest: now.rest.clone(),
-                above,
-                below,
-                above_velocity,
-                below_velocity,
-                start: crack.ends[0],
-                end: crack.ends[1],
-            });
-        }
-        frames
+        let now = self.state.cracks.iter().enumerate();
+        cracks
+            .iter()
+            .zip(now)
+            .map(|(c, (i, now))| crack_frame(i, c, now.faces.clone(), now.velocities.clone()))
+            .collect()
     }
 }

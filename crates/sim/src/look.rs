@@ -1,0 +1,80 @@
+//! What looking at a crack has in common in both formulations: where its tip is, which face a place sees, how its faces make a frame.
+
+use crate::crack::{Crack, DIRECTION_LENGTH, ENDS, chord_start, slot};
+use crate::crossing::Side;
+use fissure_scene::{CrackEnd, CrackFrame, End, Matrix, Point, Vector, orientation};
+
+/// Segments behind a tip that are looked at for the side of a place; more than any integral reaches.
+const SEGMENTS_BEHIND: usize = 40;
+
+/// A turn by the angle whose tangent is `sine`/`cosine`, and what it differs from the identity, without cancellation.
+pub(crate) fn turn(cosine: f64, sine: f64) -> (Matrix, Matrix) {
+    let r = cosine.hypot(sine);
+    let (c, s) = if r > 0.0 { (cosine / r, sine / r) } else { (1.0, 0.0) };
+    let c_minus_one = if c > 0.0 { -s * s / (1.0 + c) } else { c - 1.0 };
+    (Matrix::new(c, -s, s, c), Matrix::new(c_minus_one, -s, s, c_minus_one))
+}
+
+/// One end of a crack of which the points are at `points` now, and the direction ahead of it (unit vector); that at rest where they all coincide.
+pub(crate) fn tip_of(crack: &Crack, points: &[Point], end: End, cell_size: f64) -> (Point, Vector) {
+    let over = DIRECTION_LENGTH * cell_size;
+    let tip = if end == End::Start { points[0] } else { points[points.len() - 1] };
+    let ahead = tip - chord_start(points, end, over);
+    let length = ahead.norm();
+    (tip, if length > 0.0 { ahead / length } else { crack.ahead(end, over) })
+}
+
+/// The face of the crack through `points` that a place sees, as a side of the frame of one of its tips (`ahead`: e1): that of the nearest segment behind
+/// the tip, of the tip's own line ahead.
+pub(crate) fn side_of(points: &[Point], end: End, ahead: Vector, place: Point) -> Side {
+    let n = points.len();
+    let tip = if end == End::Start { points[0] } else { points[n - 1] };
+    let mut sign = ahead.perp(&(place - tip));
+    if (place - tip).dot(&ahead) < 0.0 {
+        let mut nearest = f64::INFINITY;
+        for k in 0..(n - 1).min(SEGMENTS_BEHIND) {
+            // Towards the tip, so that the left side is that of e2.
+            let (a, b) = match end {
+                End::End => (points[n - 2 - k], points[n - 1 - k]),
+                End::Start => (points[k + 1], points[k]),
+            };
+            let distance = crate::particles::distance_to_segment(place, a, b);
+            if distance < nearest {
+                nearest = distance;
+                sign = orientation(a, b, place);
+            }
+        }
+    }
+    if sign >= 0.0 { Side::Above } else { Side::Below }
+}
+
+/// The frame of a crack from the places and velocities of its faces, above and below; they meet at a tip.
+pub(crate) fn crack_frame(
+    index: usize,
+    crack: &Crack,
+    faces: [Vec<Point>; 2],
+    velocities: [Vec<Vector>; 2],
+) -> CrackFrame {
+    let [mut above, mut below] = faces;
+    let [mut above_velocity, mut below_velocity] = velocities;
+    for end in ENDS {
+        if crack.ends[slot(end)] == CrackEnd::Tip {
+            let k = if end == End::Start { 0 } else { above.len() - 1 };
+            let middle = nalgebra::center(&above[k], &below[k]);
+            let velocity = (above_velocity[k] + below_velocity[k]) * 0.5;
+            (above[k], below[k]) = (middle, middle);
+            (above_velocity[k], below_velocity[k]) = (velocity, velocity);
+        }
+    }
+    CrackFrame {
+        crack: index as u32,
+        body: crack.body,
+        rest: crack.points.clone(),
+        above,
+        below,
+        above_velocity,
+        below_velocity,
+        start: crack.ends[0],
+        end: crack.ends[1],
+    }
+}
