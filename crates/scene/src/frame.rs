@@ -168,7 +168,7 @@ pub struct TipRecord {
     pub direction: f64,
     /// J-integral in the direction of the crack [J/m²]; with the area term it is the energy release rate.
     pub j_integral: f64,
-    /// Stress intensity K_I [Pa·√m], positive opening.
+    /// Stress intensity K_I [Pa·√m], positive opening; with contact between crack faces not below zero.
     pub mode_1: f64,
     /// Stress intensity K_II [Pa·√m], positive when s12 > 0 ahead of the tip.
     pub mode_2: f64,
