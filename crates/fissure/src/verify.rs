@@ -1,4 +1,4 @@
-//! `fissure verify`
+//! `fissure verify`: a missed target is a result and no failure; only a run that fails is.
 
 use crate::args::VerifyArguments;
 use crate::exit::Exit;
@@ -18,6 +18,8 @@ pub(crate) fn verify(arguments: &VerifyArguments, report: &Report) -> Result<Exi
     let cases = chosen(arguments)?;
     let threads = threads::set(arguments.threads)?;
     let options = Options { cells: arguments.cells, all_offsets: arguments.all_offsets };
+    // A case that fails does not keep the others from their turn.
+    let mut first_failure = None;
     for (position, case) in cases.iter().enumerate() {
         let bar = report.draws_bars().then(ProgressBar::new_spinner);
         if let Some(bar) = &bar {
@@ -33,16 +35,28 @@ pub(crate) fn verify(arguments: &VerifyArguments, report: &Report) -> Result<Exi
         if let Some(bar) = bar {
             bar.finish_and_clear();
         }
-        let found = found.map_err(|error| Failure::from(error).during(format!("case `{}`", case.name)))?;
-        let text = if arguments.markdown {
-            fissure_verify::markdown(&found, threads)
-        } else {
-            fissure_verify::text(&found, threads)
+        let text = match found {
+            Ok(found) if arguments.markdown => fissure_verify::markdown(&found, threads),
+            Ok(found) => fissure_verify::text(&found, threads),
+            Err(error) => {
+                let failure = Failure::from(error).during(format!("case `{}`", case.name));
+                if cases.len() == 1 {
+                    return Err(failure);
+                }
+                report.error(&failure);
+                let text =
+                    format!("{}{}: {}\n", if arguments.markdown { "## " } else { "" }, case.name, failure.message);
+                first_failure.get_or_insert(failure);
+                text
+            }
         };
         let gap = if position > 0 && !arguments.markdown { "\n" } else { "" };
         report::print(&format!("{gap}{text}"))?;
     }
-    Ok(Exit::Done)
+    match first_failure {
+        Some(failure) => Err(failure.during("not every case ran to its end")),
+        None => Ok(Exit::Done),
+    }
 }
 
 fn list() -> String {

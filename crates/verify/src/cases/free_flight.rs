@@ -66,23 +66,21 @@ fn turns(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationError
         let within = |limit: f64| (!contact).then_some(limit);
         let (problem, speed) = moving(cells, [0.0; 2], SPEED, contact);
         let turn = TAU / (SPEED * speed);
-        // Frames enough for a mean over a turn.
-        let mut simulation = Simulation::new(&problem.until(10.0 * turn, 400).scene)?;
+        let mut simulation = Simulation::new(&problem.until(10.0 * turn, 10).scene)?;
         let before = simulation.momenta();
         let (mut energies, mut strains) = ([0.0; 2], [0.0; 2]);
         let (mut counts, mut momentum) = ([0.0; 2], 0.0_f64);
-        while !simulation.is_finished() {
-            simulation.advance(&mut |_| ControlFlow::Continue(()))?;
-            let slot = usize::from(simulation.time() > turn);
-            if slot == 0 || simulation.time() > 9.0 * turn {
-                let e = simulation.energies();
+        tally.run(&mut simulation, |now, _| {
+            let slot = usize::from(now.time() > turn);
+            if slot == 0 || now.time() > 9.0 * turn {
+                let e = now.energies();
                 energies[slot] += e.kinetic + e.strain;
                 strains[slot] += e.strain;
                 counts[slot] += 1.0;
+                momentum = momentum.max(now.momenta().0.norm());
             }
-            momentum = momentum.max(simulation.momenta().0.norm());
-        }
-        tally.count(simulation.particles(), simulation.steps());
+            ControlFlow::Continue(())
+        })?;
         let of_last = |sums: [f64; 2]| sums[1] / counts[1] / (sums[0] / counts[0]) - 1.0;
         let turned = simulation.momenta().1 / before.1 - 1.0;
         tally.absolute(format!("change of angular momentum, relative, {of}"), "", turned, 0.0, within(1e-10));

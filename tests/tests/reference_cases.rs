@@ -1,0 +1,154 @@
+//! Coarse versions of the reference cases. Truth: the closed forms and finite element solutions that each case names. Bounds are what was measured at these
+//! resolutions with a margin; the targets, at the standard resolutions of `fissure verify`, are in `docs/verification.md`.
+#![allow(clippy::unwrap_used)]
+
+use fissure_verify::{Options, Report, find};
+
+fn coarse(name: &str, cells: f64) -> Report {
+    let options = Options { cells: Some(cells), ..Options::default() };
+    find(name).unwrap().run(&options, &mut |_| ()).unwrap()
+}
+
+/// The error of every row whose quantity contains `part` is below `bound` (a fraction where the reference is not zero by nature, else in the row's unit).
+fn within(report: &Report, part: &str, bound: f64) {
+    let mut any = false;
+    for row in report.rows_of(part) {
+        any = true;
+        assert!(row.error().is_some_and(|e| e.abs() < bound), "{}: {row:?}, bound {bound}", report.name);
+    }
+    assert!(any, "{} has no row {part}", report.name);
+}
+
+fn met(report: &Report, part: &str) {
+    let mut any = false;
+    for row in report.rows_of(part) {
+        any = true;
+        assert_eq!(row.met(), Some(true), "{}: {row:?}", report.name);
+    }
+    assert!(any, "{} has no row {part}", report.name);
+}
+
+/// Measured 0.7 % (target 2 % at 16 cells).
+#[test]
+fn center_crack() {
+    let report = coarse("center-crack", 8.0);
+    within(&report, "K_I/(σ√πa)", 0.01);
+    met(&report, "difference between the tips");
+    met(&report, "|K_II|/K_I");
+}
+
+/// Measured 0.7 % and 0.27° (targets 2 % and 1° at 16 cells).
+#[test]
+fn slanted_crack() {
+    let report = coarse("slanted-crack", 8.0);
+    within(&report, "√(K_I²+K_II²)", 0.01);
+    within(&report, "mode angle", 0.5);
+}
+
+/// Measured 1.6 % and 1.4 % (target 3 % at 8 cells).
+#[test]
+fn double_cantilever() {
+    let report = coarse("double-cantilever", 4.0);
+    within(&report, "J, ", 0.022);
+    within(&report, "D/P", 0.02);
+    met(&report, "|K_II|/K_I");
+}
+
+/// Measured 0.8 % of K_I and 0.003 in K_II for all but the inner tips of the narrower gap, which is two cells wide here (targets 3 % at 8 cells).
+#[test]
+fn crack_pairs() {
+    let report = coarse("crack-pairs", 4.0);
+    within(&report, "K_I/(σ√πa), stacked", 0.012);
+    within(&report, "K_I/(σ√πa), collinear, gap 1 a", 0.01);
+    met(&report, "K_II/(σ√πa), stacked");
+}
+
+/// Measured 1.6 % (target 1 % at 40 cells).
+#[test]
+fn step_load() {
+    within(&coarse("step-load", 20.0), "rms error of K_I", 2.0);
+}
+
+/// Measured 8.1 % (target 10 % at 40 cells).
+#[test]
+fn moving_crack() {
+    within(&coarse("moving-crack", 20.0), "mean J E'/K_I² at 1500 m/s", 0.1);
+}
+
+/// Measured 19 % at 2.4 t_c (target 10 % at 40 cells).
+#[test]
+fn crack_motion() {
+    let report = coarse("crack-motion", 20.0);
+    met(&report, "start");
+    within(&report, "Δa at 2.4 t_c", 0.22);
+    met(&report, "highest speed");
+}
+
+/// Measured 4.0 % and 0.03 µs (targets 3 % and 0.2 µs at 80 cells).
+#[test]
+fn strip() {
+    let report = coarse("strip", 40.0);
+    within(&report, "first peak of K_I", 0.05);
+    within(&report, "middle of the first peak", 0.06);
+}
+
+/// Measured 13.0 µs and 67.3°, K_I 0 (targets 13 to 17 µs and 60 to 72° at 50 cells).
+#[test]
+fn impacted_notch() {
+    let report = coarse("impacted-notch", 25.0);
+    met(&report, "mean angle");
+    met(&report, "largest |K_I|/K_Ic");
+    within(&report, "K_II/K_Ic at the start", 0.02);
+}
+
+/// Measured 0.9 % (target 3 % at 80 cells).
+#[test]
+fn branching_plate() {
+    let report = coarse("branching-plate", 40.0);
+    within(&report, "start of growth", 0.015);
+    met(&report, "mean speed");
+}
+
+/// Measured 0.8° (target 2° at 16 cells).
+#[test]
+fn kink_angles() {
+    let report = coarse("kink-angles", 8.0);
+    within(&report, "angle asked for", 1.2);
+    within(&report, "kink of the crack", 1.2);
+}
+
+/// Measured 0.7 % (target 2 % at 8 cells).
+#[test]
+fn cantilever() {
+    within(&coarse("cantilever", 4.0), "ωL√(ρ/E)", 0.01);
+}
+
+/// Measured 0.5 % (target 1 %).
+#[test]
+fn bar_wave() {
+    let report = coarse("bar-wave", 20.0);
+    within(&report, "speed of", 0.008);
+    within(&report, "stress behind", 0.003);
+    within(&report, "particle speed", 0.003);
+}
+
+/// Measured 0.3 % (target 2 % at 20 cells).
+#[test]
+fn spinning_disc() {
+    let report = coarse("spinning-disc", 10.0);
+    within(&report, "mean of σ_r + σ_t", 0.005);
+    met(&report, "change of angular momentum");
+}
+
+#[test]
+fn free_flight() {
+    met(&coarse("free-flight", 5.0), "");
+}
+
+/// Half a turn and whole turns are where a rotation computed from its sine or cosine alone fails.
+#[test]
+fn ten_turns() {
+    let report = coarse("ten-turns", 4.0);
+    met(&report, "change of angular momentum, relative, without contact");
+    met(&report, "momentum by mass times rim speed, without contact");
+}
