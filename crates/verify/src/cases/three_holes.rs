@@ -25,7 +25,7 @@ pub(crate) const CASE: Case = Case::new(
 );
 
 /// Kinetic energy at rest between increments, as a part of the strain energy.
-const PAUSE: f64 = 1e-6;
+const PAUSE: f64 = 1e-5;
 const INCH: f64 = 0.0254;
 /// Heights of the holes at x = 6 [in].
 const HOLES: [f64; 3] = [2.75, 4.75, 6.75];
