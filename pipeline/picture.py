@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Draws GLB frames side by side as one small PNG: a z-buffer, one light, nothing else.
+"""Draws GLB frames side by side as one small PNG: a z-buffer, one light, and a line along cracks.
 
     python pipeline/picture.py out/pull/pull.0012.glb out/pull/pull.0048.glb -o picture.png
     python pipeline/picture.py out/drop/drop.0045.glb+out/drop/drop_collider.0045.glb -o picture.png
 
-Files joined by `+` are drawn over each other; the first decides what is in view.
+Files joined by `+` are drawn over each other; the first decides what is in view. A crack that is hardly open shows as
+a line: where a crack face meets the surface.
 Needs numpy, Pillow and trimesh (pipeline/checks/requirements.txt).
 """
 import argparse
@@ -15,6 +16,8 @@ from PIL import Image
 
 COLOURS = {"outside": (0.74, 0.80, 0.86), "inside": (0.93, 0.42, 0.19), "collider": (0.55, 0.55, 0.55)}
 LIGHT = np.array([-0.35, 0.55, 0.76])
+LINE = np.array([0.55, 0.20, 0.07])
+MARK = np.array([0.16, 0.30, 0.52])
 SAMPLES = 3  # per pixel and direction
 
 
@@ -35,14 +38,57 @@ def triangles(path):
     return np.concatenate(corners), np.concatenate(colours)
 
 
+def rims(corners, colours):
+    """Edges (n, 2, 3) where a crack face meets the surface; corners and colours as of `triangles`."""
+    size = np.ptp(corners.reshape(-1, 3), axis=0).max()
+    keys = np.round(corners / size * 1e7).astype(np.int64)
+    is_inside = (colours == COLOURS["inside"]).all(1)
+    is_outside = (colours == COLOURS["outside"]).all(1)
+
+    def edges(which):
+        pairs = np.concatenate([keys[which][:, [a, b]] for a, b in ((0, 1), (1, 2), (2, 0))])
+        places = np.concatenate([corners[which][:, [a, b]] for a, b in ((0, 1), (1, 2), (2, 0))])
+        return {frozenset(map(tuple, pair)): place for pair, place in zip(pairs.tolist(), places)}
+
+    surface = edges(is_outside)
+    shared = [place for key, place in edges(is_inside).items() if key in surface]
+    return np.array(shared).reshape(-1, 2, 3)
+
+
+def circle(x, y, radius, z):
+    """A circle as lines (n, 2, 3)."""
+    angle = np.linspace(0, 2 * np.pi, 97)
+    ring = np.stack([x + radius * np.cos(angle), y + radius * np.sin(angle), np.full_like(angle, z)], 1)
+    return np.stack([ring[:-1], ring[1:]], 1)
+
+
+def draw_lines(image, depth, lines, colour, scale, centre, width):
+    """Draws lines (n, 2, 3) in view space over an image where nothing nearer hides them."""
+    height, columns = depth.shape
+    ends = lines[:, :, :2] - centre
+    ends = ends * scale * [1, -1] + [columns / 2, height / 2]
+    reach = np.arange(width) - (width - 1) / 2
+    for (p, q), (z_p, z_q) in zip(ends, lines[:, :, 2]):
+        t = np.linspace(0, 1, int(np.abs(q - p).max()) + 2)
+        x = np.floor(p[0] + t * (q[0] - p[0]))[:, None, None] + reach[None, :, None]
+        y = np.floor(p[1] + t * (q[1] - p[1]))[:, None, None] + reach[None, None, :]
+        z = np.broadcast_to((z_p + t * (z_q - z_p))[:, None, None], (len(t), width, width))
+        x, y = np.broadcast_arrays(x, y)
+        x, y, z = x.astype(int).ravel(), y.astype(int).ravel(), z.ravel()
+        seen = (x >= 0) & (x < columns) & (y >= 0) & (y < height)
+        x, y, z = x[seen], y[seen], z[seen]
+        nearest = z > depth[y, x] - 2 * width / scale
+        image[y[nearest], x[nearest]] = colour
+
+
 def turn(yaw, pitch):
     """Rotation that turns the drawing towards the camera, which looks along -z."""
     cy, sy, cp, sp = np.cos(yaw), np.sin(yaw), np.cos(pitch), np.sin(pitch)
     return np.array([[1, 0, 0], [0, cp, -sp], [0, sp, cp]]) @ np.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]])
 
 
-def draw(corners, colours, low, high, width, height):
-    """An image (height, width, 3) of triangles in view space; `low` and `high` bound what is seen."""
+def draw(corners, colours, marks, lines, low, high, width, height):
+    """An image (height, width, 3) of triangles and lines in view space; `low` and `high` bound what is seen."""
     scale = min(width / (high[0] - low[0]), height / (high[1] - low[1]))
     centre = (low[:2] + high[:2]) / 2
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -68,6 +114,8 @@ def draw(corners, colours, low, high, width, height):
         nearer = inside & (here > depth[window])
         depth[window][nearer] = here[nearer]
         image[window][nearer] = colour
+    draw_lines(image, depth, marks, MARK, scale, centre, SAMPLES)
+    draw_lines(image, depth, lines, LINE, scale, centre, SAMPLES)
     return image
 
 
@@ -78,6 +126,7 @@ def main():
     parser.add_argument("--size", type=int, default=300, help="height in pixels")
     parser.add_argument("--yaw", type=float, default=-25, help="degrees about the upright axis")
     parser.add_argument("--pitch", type=float, default=18, help="degrees from above")
+    parser.add_argument("--circle", action="append", default=[], metavar="X,Y,RADIUS", help="a circle drawn on the front")
     options = parser.parse_args()
     rotation = turn(np.radians(options.yaw), np.radians(options.pitch))
     frames, in_view = [], []
@@ -85,14 +134,16 @@ def main():
         parts = [triangles(path) for path in group.split("+")]
         in_view.append(parts[0][0].reshape(-1, 3) @ rotation.T)
         corners, colours = (np.concatenate(arrays) for arrays in zip(*parts))
-        frames.append((corners @ rotation.T, colours))
+        circles = [circle(*map(float, c.split(",")), corners[:, :, 2].max()) for c in options.circle]
+        marks = np.concatenate([np.empty((0, 2, 3)), *circles])
+        frames.append((corners @ rotation.T, colours, marks @ rotation.T, rims(corners, colours) @ rotation.T))
     in_view = np.concatenate(in_view)
     low, high = in_view.min(0), in_view.max(0)
     margin = 0.04 * (high - low).max()
     low, high = low - margin, high + margin
     height = options.size * SAMPLES
     width = int(height * (high[0] - low[0]) / (high[1] - low[1]))
-    image = np.concatenate([draw(c, k, low, high, width, height) for c, k in frames], axis=1)
+    image = np.concatenate([draw(*frame, low, high, width, height) for frame in frames], axis=1)
     picture = Image.fromarray((255 * np.clip(image, 0, 1) ** (1 / 1.1)).astype(np.uint8))
     picture = picture.resize((picture.width // SAMPLES, picture.height // SAMPLES), Image.Resampling.LANCZOS)
     picture.quantize(128, dither=Image.Dither.NONE).save(options.output, optimize=True)
