@@ -6,6 +6,7 @@ use crate::crack::{Crack, Measured};
 use crate::crossing::Side;
 use crate::domain::domain_integrals;
 use crate::elastic::Elastic;
+use crate::growth;
 use crate::kernel::axis_stencil;
 use crate::solver::{Observed, QuadraturePoint, TipZone};
 use fissure_scene::{End, JMethod, Matrix, ModeSplit, Point, Scene, Vector};
@@ -70,26 +71,18 @@ impl Gauge<'_> {
         let split = if settings.crack_contact { without_pressure(split) } else { split };
         let decisive = decisive(j_integral, split, elastic.effective_modulus);
         let kink_angle = decisive.kink_angle(self.scene.growth.bending);
-        Measured {
+        let mut measured = Measured {
             j_integral,
             mode_1: split.mode_1,
             mode_2: split.mode_2,
             kink_angle,
             equivalent: decisive.equivalent(kink_angle),
-            fracture_toughness: self.toughness_ahead(&cracks[crack], end),
+            fracture_toughness: 0.0,
             contour_radius: radius,
             radius_shrunk: radius < wanted,
-        }
-    }
-
-    /// Fracture toughness of what the next increment would break [Pa·√m]: of the material in its middle, as strong as the scene makes it there.
-    fn toughness_ahead(&self, line: &Crack, end: End) -> f64 {
-        let half = 0.5 * self.scene.growth.increment * self.scene.cell_size;
-        let ahead = line.ahead(end, crate::crack::DIRECTION_LENGTH * self.scene.cell_size);
-        let place = line.tip_position(end) + ahead * half;
-        let body = &self.scene.bodies[line.body as usize];
-        let material = &self.scene.materials[body.material_at(place)];
-        material.fracture_toughness * self.scene.toughness_factor(line.body as usize, place)
+        };
+        measured.fracture_toughness = growth::toughness_ahead(&cracks[crack], end, &measured, self.scene);
+        measured
     }
 
     /// Distance from a tip to the nearest thing that would spoil the integral: a ring, another crack, the other end of this one, a kink [m].

@@ -10,8 +10,9 @@ use crate::crack::{Crack, Measured, slot};
 use crate::elastic::Elastic;
 use fissure_scene::{End, Point, Scene};
 
-/// Length of new branches, in cells: as long as the smallest radius of an integral, so that the two tips can be told apart.
-const FIRST_LENGTH: f64 = 2.0;
+/// Length of new branches, in cells. At the default angle their tips are then 3.6 cells apart: each has the smallest radius of an integral for itself.
+/// With 2 cells each tip feels the faces of the other, and the branches turn back and meet.
+const FIRST_LENGTH: f64 = 4.0;
 
 /// The points of the two branches of a tip, from the tip on and without it, left and right as seen along the crack; none when the tip does not divide.
 pub(crate) fn branches(

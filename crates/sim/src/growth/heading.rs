@@ -46,9 +46,9 @@ pub(super) fn physical_way(crack: &Crack, end: End, measured: &Measured, scene: 
     tip.and_then(|t| t.heading.try_normalize(0.0)).unwrap_or_else(|| asked(crack, end, measured, scene))
 }
 
-/// The direction a tip takes (unit vector, at rest): its heading, turned towards its guide by the strength of the guide.
+/// The direction a tip takes (unit vector, at rest): its heading, turned to what is weak, then towards its guide by the strength of the guide.
 pub(super) fn way(crack: &Crack, end: End, measured: &Measured, scene: &Scene) -> Vector {
-    let physical = physical_way(crack, end, measured, scene);
+    let physical = super::seeking::seek(crack, end, physical_way(crack, end, measured, scene), scene);
     let Some(guide) = crack.tips[slot(end)].as_ref().and_then(|t| t.guide.as_ref()) else { return physical };
     match guide.drawn_direction(crack.tip_position(end), DIRECTION_LENGTH * scene.cell_size) {
         Some(drawn) => turned(physical, guide.strength() * physical.perp(&drawn).atan2(physical.dot(&drawn))),

@@ -8,16 +8,18 @@
 mod branching;
 mod heading;
 mod obstacle;
+mod seeking;
 mod speed;
 
 pub(crate) use branching::branches;
 pub(crate) use heading::heading;
+pub(crate) use seeking::toughness_at;
 pub(crate) use speed::speed_limit;
 
 use crate::crack::{Crack, DIRECTION_LENGTH, Measured, slot};
 use fissure_scene::{CrackEnd, End, Point, Scene, TipState, Vector};
 use heading::{physical_way, way};
-use obstacle::first_obstacle;
+use obstacle::{beside, first_obstacle};
 
 /// A ligament of less than this many cells breaks at once: no integral can be taken in it.
 const LAST_LIGAMENT: f64 = 1.5;
@@ -48,9 +50,16 @@ pub(crate) fn wants_to_grow(crack: &Crack, end: End, measured: &Measured, scene:
     equivalent(crack, end, measured, scene) >= needed && needed > 0.0
 }
 
-/// K_eq [Pa·√m] for the direction the tip would take: what was measured for the physical direction, times how much less the drawn one gets of it.
+/// Fracture toughness of what the next increment would break [Pa·√m]: of what lies in its middle, in the direction the tip takes.
+pub(crate) fn toughness_ahead(crack: &Crack, end: End, measured: &Measured, scene: &Scene) -> f64 {
+    let half = 0.5 * scene.growth.increment * scene.cell_size;
+    toughness_at(crack, crack.tip_position(end) + way(crack, end, measured, scene) * half, scene)
+}
+
+/// K_eq [Pa·√m] for the direction the tip would take: what was measured for the physical direction, times how much less that one gets of it.
 fn equivalent(crack: &Crack, end: End, measured: &Measured, scene: &Scene) -> f64 {
-    if crack.tips[slot(end)].as_ref().is_none_or(|t| t.guide.is_none()) {
+    let has_guide = crack.tips[slot(end)].as_ref().is_some_and(|t| t.guide.is_some());
+    if !has_guide && !seeking::is_varied(crack, scene) {
         return measured.equivalent;
     }
     let ahead = crack.ahead(end, DIRECTION_LENGTH * scene.cell_size);
@@ -103,6 +112,11 @@ pub(crate) fn advance(
     }
     let toward = way(crack, end, measured, scene);
     if let Some(hit) = first_obstacle(cracks, index, end, region, from, from + toward * (step + LAST_LIGAMENT * h)) {
+        return Some(hit.finish(Vec::new(), from));
+    }
+    if let Some(near) = beside(cracks, index, end, toward, h)
+        && let Some(hit) = first_obstacle(cracks, index, end, region, from, near + (near - from) * 0.01)
+    {
         return Some(hit.finish(Vec::new(), from));
     }
     Some(Advance { points: vec![from + toward * step], end: CrackEnd::Tip, state: TipState::Growing })

@@ -1,8 +1,11 @@
 //! What stands in the way of a tip: the rings of its body and other cracks. A tip ends exactly on them.
 
-use super::Advance;
-use crate::crack::Crack;
-use fissure_scene::{CrackEnd, End, Point, Region, TipState, orientation, segments_touch};
+use super::{Advance, LAST_LIGAMENT};
+use crate::crack::{Crack, ENDS, slot};
+use fissure_scene::{CrackEnd, End, Point, Region, TipState, Vector, orientation, segments_touch};
+
+/// Its own crack, the one it branched from and its branches count as beside a tip only this many cells from where they part.
+const PARTED: f64 = 8.0;
 
 /// A place where a tip ends.
 #[derive(Debug, Clone, Copy)]
@@ -62,6 +65,59 @@ pub(super) fn first_obstacle(
         }
     }
     nearest.map(|n| n.1)
+}
+
+/// The place to end for a tip beside another crack, or beside an older part of its own, nearer than a last ligament; none when there is no such crack.
+///
+/// Two cracks side by side within a cell leave a strip that the grid does not resolve, of fields with next to no mass; a real one breaks.
+pub(super) fn beside(cracks: &[Crack], index: usize, end: End, toward: Vector, h: f64) -> Option<Point> {
+    let crack = &cracks[index];
+    let from = crack.tip_position(end);
+    let own_tip = crack.tips[slot(end)].as_ref()?;
+    // A branch begins beside its twin.
+    let has_parted = own_tip.grown.min(own_tip.since_division) >= PARTED * h;
+    let is_twin = |other: usize, line: &Crack| {
+        crack.ends.contains(&CrackEnd::Junction { crack: other as u32 })
+            || line.ends.contains(&CrackEnd::Junction { crack: index as u32 })
+    };
+    let mut nearest: Option<(f64, Point)> = None;
+    // Of two tips side by side only one ends on the other.
+    let ended_here = |c: &Crack| {
+        let met = |end: End| c.tips[slot(end)].as_ref().is_some_and(|t| t.state == TipState::MetCrack);
+        ENDS.into_iter().any(|end| met(end) && c.ends[slot(end)] == CrackEnd::Junction { crack: index as u32 })
+    };
+    for (other, line) in cracks.iter().enumerate().filter(|(_, c)| c.body == crack.body && !ended_here(c)) {
+        if !has_parted && other != index && is_twin(other, line) {
+            continue;
+        }
+        let n = line.points.len();
+        let mut behind = 0.0;
+        for j in 1..n {
+            // From the tip back along the own crack.
+            let k = if other == index && end == End::End { n - j } else { j };
+            let (a, b) = (line.points[k - 1], line.points[k]);
+            behind += (b - a).norm();
+            if other == index && behind < PARTED * h {
+                continue;
+            }
+            let at = nearest_on_segment(from, a, b);
+            let distance = (at - from).norm();
+            let is_behind = (at - from).dot(&toward) < -0.5 * distance;
+            if distance > 0.0 && !is_behind && distance < LAST_LIGAMENT * h && nearest.is_none_or(|n| distance < n.0) {
+                nearest = Some((distance, at));
+            }
+        }
+    }
+    nearest.map(|n| n.1)
+}
+
+fn nearest_on_segment(place: Point, a: Point, b: Point) -> Point {
+    let along = b - a;
+    let square = along.norm_squared();
+    if square == 0.0 {
+        return a;
+    }
+    a + along * ((place - a).dot(&along) / square).clamp(0.0, 1.0)
 }
 
 /// Where the way from `p` to `q` meets the segment `a`–`b`: (fraction of the way, place), the start of the way left out.

@@ -41,11 +41,14 @@ impl Simulation {
         };
         solver.step(cracks, state.time, time_step, &mut observe)?;
         state.steps += 1;
-        for (&(crack, end), m) in live.iter().zip(&measured) {
+        for (&(crack, end), m) in live.iter().zip(&mut measured) {
             let heading = growth::heading(&state.cracks[crack], end, m, scene, elastic, time_step);
             if let Some(tip) = &mut state.cracks[crack].tips[slot(end)] {
-                tip.measured = *m;
                 tip.heading = heading;
+            }
+            m.fracture_toughness = growth::toughness_ahead(&state.cracks[crack], end, m, scene);
+            if let Some(tip) = &mut state.cracks[crack].tips[slot(end)] {
+                tip.measured = *m;
                 let is_far = m.equivalent < FAR_FROM_GROWTH * m.fracture_toughness;
                 let has_schedule = tip.guide.as_ref().is_some_and(|g| g.due(0.0, 0.0).is_some());
                 if tip.state != TipState::Growing && is_far && !has_schedule {

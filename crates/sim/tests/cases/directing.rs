@@ -1,7 +1,9 @@
 //! Cracks that are told where, when and how fast to go.
 
 use crate::common::{add_crack, plate, pull, rectangle, run};
-use fissure_scene::{Branching, Curve, Frame, Guide, Inclusion, Point, Scene, TipState, ToughnessKind, ToughnessPatch};
+use fissure_scene::{
+    Branching, Curve, Frame, Guide, Inclusion, Point, Region, Scene, TipState, ToughnessKind, ToughnessPatch, Vector,
+};
 use fissure_sim::{Elastic, Simulation};
 
 /// Where the crack begins and its tip is at first [m].
@@ -154,4 +156,22 @@ fn an_overdriven_tip_divides() {
     assert!((right.perp(&left).atan2(right.dot(&left)) - 2.0 * half_angle).abs() < 1e-9);
     // A closed form for nothing: only that every number is one.
     assert!(frame.particles.position.iter().all(|p| p.x.is_finite() && p.y.is_finite()));
+}
+
+/// Truth: a straight run. A weak band at 30 degrees to the crack is followed as if drawn; without it the crack runs straight.
+#[test]
+fn cracks_seek_what_is_weak() {
+    let mut scene = pulled();
+    let along = Vector::new(30.0_f64.to_radians().cos(), 30.0_f64.to_radians().sin());
+    let across = Vector::new(-along.y, along.x) * (0.75 * scene.cell_size);
+    let (start, end) = (Point::from(TIP) - along * scene.cell_size, Point::from(TIP) + along * 12.0);
+    let exterior = vec![start - across, end - across, end + across, start + across];
+    let region = Region { exterior, holes: Vec::new() };
+    scene.toughness = vec![ToughnessPatch { body: None, kind: ToughnessKind::Region { region, factor: 0.25 } }];
+    let frame = after(&scene, 10);
+    let path = &frame.cracks[0].rest;
+    assert!(path.last().unwrap().x > TIP[0] + 5.0, "stopped at {:?}", path.last());
+    let off = path.iter().filter(|p| (TIP[0] + 1.0..TIP[0] + 5.0).contains(&p.x));
+    let worst = off.map(|p| (p - Point::from(TIP)).perp(&along).abs()).fold(0.0, f64::max);
+    assert!(worst < 1.5 * scene.cell_size, "{worst} m off the middle of the band");
 }
