@@ -104,7 +104,7 @@ pub(crate) trait Solver: std::fmt::Debug + Send {
     /// Largest stable time step for the present state [s].
     fn stable_time_step(&self) -> f64;
 
-    /// The same where it changes with every step and is cheap to tell; none where only growth changes it.
+    /// A bound from above of the same that is cheap to tell, for looks between the looks; none where there is none.
     fn moving_time_step(&self) -> Option<f64> {
         None
     }

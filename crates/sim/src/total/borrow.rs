@@ -62,6 +62,9 @@ impl Total {
             self.move_mass(lender as usize, field as usize, mass);
         }
         self.state.borrowed = loans;
+        // Where many fields share a node there may not be enough to lend.
+        let stiffest = |(s, m): (&f64, &f64)| if *m > 0.0 { s / m } else { 0.0 };
+        self.state.stiffest = stiffness.iter().zip(&self.state.mass).map(stiffest).fold(0.0, f64::max);
     }
 
     /// Moves mass with its momentum from one field to another of the same node.

@@ -48,6 +48,8 @@ struct State {
     mass: Vec<f64>,
     /// Mass that light fields hold for others: (field, lender, mass [kg/m]).
     borrowed: Vec<(u32, u32, f64)>,
+    /// Largest stiffness over mass of a divided field, loans included [1/s²].
+    stiffest: f64,
     /// Displacement u [m].
     displacement: FieldVectors,
     /// Velocity v at half steps [m/s].
@@ -142,6 +144,7 @@ impl Total {
             fields: Fields::new(grid.len()),
             mass: vec![0.0; grid.len()],
             borrowed: Vec::new(),
+            stiffest: 0.0,
             displacement: zeros(),
             velocity: zeros(),
             cut: CutParticles::new(particles.len()),
@@ -354,6 +357,11 @@ const PARALLEL_NODES: usize = 20_000;
 impl Solver for Total {
     fn stable_time_step(&self) -> f64 {
         self.lanczos_time_step()
+    }
+
+    fn moving_time_step(&self) -> Option<f64> {
+        // Alone, one field of stiffness over mass ω² allows 2/ω; the whole lattice allows less.
+        (self.state.stiffest > 0.0).then(|| 2.0 / self.state.stiffest.sqrt())
     }
 
     fn step(
