@@ -417,7 +417,7 @@ impl Simulation {
         let change = now / self.stable_time_step;
         let rises = self.formulation == Formulation::Updated && change > 1.0 + LIMIT_SLACK;
         // NaN counts as moved.
-        rises || !(change >= 1.0 - LIMIT_SLACK)
+        rises || change < 1.0 - LIMIT_SLACK || change.is_nan()
     }
 
     fn split_pieces(&mut self) {
