@@ -39,6 +39,10 @@ pub(crate) struct Tip {
     pub(crate) grown_at_frame: f64,
     /// What was measured last.
     pub(crate) measured: Measured,
+    /// Where the increment ends that the tip is on its way through; none between increments.
+    pub(crate) target: Option<Point>,
+    /// What the tip has taken out of the body beyond what its growth costs [J/m], never negative; only so much of it counts as the next way allows.
+    pub(crate) balance: f64,
     /// Direction of growth asked for by the stress, averaged over the last moments; at rest, not normalised. Zero: nothing known.
     pub(crate) heading: Vector,
 }
@@ -56,7 +60,22 @@ impl Tip {
             grown: 0.0,
             grown_at_frame: 0.0,
             measured: Measured::default(),
+            target: None,
+            balance: f64::INFINITY,
             heading: Vector::zeros(),
+        }
+    }
+}
+
+impl Tip {
+    /// Takes up that the tip has grown by `length` [m].
+    pub(crate) fn take_up(&mut self, length: f64) {
+        self.grown += length;
+        self.since_division += length;
+        self.ahead_of_limit += length;
+        self.steps_at_rest = 0;
+        if let Some(guide) = &mut self.guide {
+            guide.walk(length);
         }
     }
 }
@@ -69,6 +88,8 @@ pub(crate) struct Measured {
     pub(crate) mode_2: f64,
     pub(crate) kink_angle: f64,
     pub(crate) equivalent: f64,
+    /// What of J drives growth [J/m²].
+    pub(crate) released: f64,
     pub(crate) fracture_toughness: f64,
     pub(crate) contour_radius: f64,
     pub(crate) radius_shrunk: bool,
@@ -160,12 +181,27 @@ impl Crack {
         (tip - chord_start(&self.points, end, over)).normalize()
     }
 
+    /// Unit vector of the last segment at rest, pointing ahead of the end.
+    pub(crate) fn last_direction(&self, end: End) -> Vector {
+        let n = self.points.len();
+        match end {
+            End::Start => (self.points[0] - self.points[1]).normalize(),
+            End::End => (self.points[n - 1] - self.points[n - 2]).normalize(),
+        }
+    }
+
     /// Adds a point at an end.
     pub(crate) fn push(&mut self, end: End, point: Point) {
         match end {
             End::Start => self.points.insert(0, point),
             End::End => self.points.push(point),
         }
+    }
+
+    /// Moves the point of an end.
+    pub(crate) fn move_end(&mut self, end: End, to: Point) {
+        let last = self.points.len() - 1;
+        self.points[if end == End::Start { 0 } else { last }] = to;
     }
 
     /// Length at rest [m].

@@ -41,6 +41,11 @@ impl Fields {
         fields.iter().find(|(set, _)| set == crossed).map(|&(_, field)| field as usize)
     }
 
+    /// The further fields of a node, each with its crossed set.
+    pub(crate) fn of(&self, node: usize) -> &[(CrossedSet, u32)] {
+        self.of_node.get(&(node as u32)).map_or(&[], Vec::as_slice)
+    }
+
     /// The field at `node` for particles across `crossed`, made when it does not exist.
     pub(crate) fn find_or_add(&mut self, node: usize, crossed: &CrossedSet) -> usize {
         if let Some(field) = self.find(node, crossed) {

@@ -77,6 +77,7 @@ impl Gauge<'_> {
             mode_2: split.mode_2,
             kink_angle,
             equivalent: decisive.equivalent(kink_angle),
+            released: decisive.energy_release_rate(elastic.effective_modulus),
             fracture_toughness: 0.0,
             contour_radius: radius,
             radius_shrunk: radius < wanted,

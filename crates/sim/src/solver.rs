@@ -99,6 +99,9 @@ pub(crate) struct Handover {
     pub(crate) external_work: f64,
 }
 
+/// Energy that a tip takes out of the body when it goes straight on by a distance [m] at once, everything else staying as it is [J/m]. It rises, ever less steeply.
+pub(crate) type Release = Box<dyn Fn(f64) -> f64>;
+
 /// A formulation of the solver.
 pub(crate) trait Solver: std::fmt::Debug + Send {
     /// Largest stable time step for the present state [s].
@@ -129,6 +132,24 @@ pub(crate) trait Solver: std::fmt::Debug + Send {
 
     /// Takes up the cracks as they are now: `changed` (crack, end) have got new points at rest since the last call, or new ends.
     fn recut(&mut self, cracks: &[Crack], changed: &[(usize, End)]);
+
+    /// Whether tips can go a part of an increment; otherwise they jump from one to the next, and what follows here does nothing.
+    fn slides(&self) -> bool {
+        false
+    }
+
+    /// What a tip would take out of the body if it went straight on now.
+    fn release(&self, _cracks: &[Crack], _crack: usize, _end: End) -> Release {
+        Box::new(|_| 0.0)
+    }
+
+    /// Energy that drag behind a growing tip has taken out of the body since the last call [J/m].
+    fn take_drag(&mut self, _crack: usize, _end: End) -> f64 {
+        0.0
+    }
+
+    /// Takes up that the last point of a crack at an end has moved on along its segment since the last recut, by an increment at most.
+    fn slide(&mut self, _cracks: &[Crack], _crack: usize, _end: End) {}
 
     /// The solver as one that can be observed between steps.
     fn observed(&self) -> &dyn Observed;

@@ -35,15 +35,22 @@ pub(crate) struct Advance {
     pub(crate) state: TipState,
 }
 
-/// Whether a tip grows at `time` [s], given what was measured.
-pub(crate) fn wants_to_grow(crack: &Crack, end: End, measured: &Measured, scene: &Scene, time: f64) -> bool {
+/// Whether a tip grows at `time` [s], given what was measured. `slides`: it can also go a part of an increment.
+pub(crate) fn wants_to_grow(
+    crack: &Crack,
+    end: End,
+    measured: &Measured,
+    scene: &Scene,
+    time: f64,
+    slides: bool,
+) -> bool {
     let Some(tip) = &crack.tips[slot(end)] else { return false };
     if !scene.growth.enabled || !tip.state.is_live() {
         return false;
     }
     if let Some(due) = tip.guide.as_ref().and_then(|g| g.due(tip.grown, time)) {
         let h = scene.cell_size;
-        return due.length >= scene.growth.increment * h || (due.is_last && due.length > 1e-9 * h);
+        return due.length >= scene.growth.increment * h || ((due.is_last || slides) && due.length > 1e-9 * h);
     }
     // NaN compares false: nothing known, no growth.
     let needed = measured.fracture_toughness;
@@ -67,6 +74,26 @@ fn equivalent(crack: &Crack, end: End, measured: &Measured, scene: &Scene) -> f6
     let along = |toward: Vector| split.equivalent(ahead.perp(&toward).atan2(ahead.dot(&toward)));
     let own = along(physical_way(crack, end, measured, scene));
     if own > 0.0 { measured.equivalent * along(way(crack, end, measured, scene)) / own } else { 0.0 }
+}
+
+/// What a way of a tip costs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Cost {
+    /// Nothing; a schedule lets the tip go on by so much now [m].
+    Scheduled(f64),
+    /// Energy per length [J/m²].
+    Energy(f64),
+}
+
+/// What growth costs a tip. In energy: of what is released now, the part that is needed. K_eq² goes with the energy that is released, whatever the mode
+/// and the direction, so at K_eq = K_c this is all of it, and in mode I it is always K_c²/E'.
+pub(crate) fn cost(crack: &Crack, end: End, measured: &Measured, scene: &Scene, time: f64) -> Cost {
+    let tip = crack.tips[slot(end)].as_ref();
+    if let Some(due) = tip.and_then(|t| t.guide.as_ref()?.due(t.grown, time)) {
+        return Cost::Scheduled(due.length);
+    }
+    let part = measured.fracture_toughness / equivalent(crack, end, measured, scene);
+    Cost::Energy(measured.released * part * part)
 }
 
 /// The next increment of a tip that wants to grow.

@@ -3,13 +3,25 @@
 use super::Simulation;
 use crate::SimulationError;
 use crate::crack::{Crack, ENDS, Measured, Tip, slot};
-use crate::growth;
+use crate::growth::{self, Advance, Cost};
 use crate::measure::Gauge;
 use crate::solver::Observed;
 use fissure_scene::{CrackEnd, End, Point, TipState, Vector};
 
 /// Increments one tip may take in one step: with a step of 0.9 h/c_d and quarter cells, more would be faster than any wave.
 const MOST_INCREMENTS_PER_STEP: usize = 4;
+
+/// Part of an increment that a tip takes at once to give it its direction.
+const FIRST_PART: f64 = 1e-3;
+
+/// How far a tip may run ahead on what it has taken before, in cells: the release of the lattice is not quite even within a cell.
+const BALANCE_CELLS: f64 = 0.05;
+
+/// Ways shorter than this are not worth going, in cells.
+const LEAST_SLIDE: f64 = 1e-6;
+
+/// Halvings of an increment in search of what a tip can pay.
+const HALVINGS: u32 = 24;
 
 /// A growing tip that has not moved for so many steps is at rest.
 const ARREST_STEPS: u32 = 50;
@@ -58,9 +70,19 @@ impl Simulation {
         }
         let time = state.time + time_step;
         for (&(crack, end), &m) in live.iter().zip(&measured) {
+            self.pay_drag(crack, end);
             self.grow(crack, end, m, time, time_step);
         }
         Ok(())
+    }
+
+    /// What drag has taken counts as taken by the tip.
+    fn pay_drag(&mut self, crack: usize, end: End) {
+        let energy = self.solver.take_drag(crack, end);
+        self.state.crack_energy += energy;
+        if let Some(tip) = &mut self.state.cracks[crack].tips[slot(end)] {
+            tip.balance += energy;
+        }
     }
 
     /// Lets one tip grow as far as the energy balance and the speed limit allow within a step that ends at `time`.
@@ -75,32 +97,96 @@ impl Simulation {
             let line = &self.state.cracks[crack];
             let Some(tip) = &line.tips[slot(end)] else { return };
             let held = may_run <= 0.0 || tip.ahead_of_limit > 0.0;
-            if held || !growth::wants_to_grow(line, end, &measured, &self.scene, time) {
+            if held || !growth::wants_to_grow(line, end, &measured, &self.scene, time, self.solver.slides()) {
                 if increment == 0 {
                     self.rest(crack, end, held);
                 }
                 return;
             }
-            if let Some(branches) =
-                growth::branches(&self.state.cracks, crack, end, &measured, &self.scene, &self.elastic)
-            {
-                self.divide(crack, end, branches, &measured);
-                return;
+            if tip.target.is_none() {
+                if let Some(branches) =
+                    growth::branches(&self.state.cracks, crack, end, &measured, &self.scene, &self.elastic)
+                {
+                    self.divide(crack, end, branches, &measured);
+                    return;
+                }
+                let Some(advance) = growth::advance(&self.state.cracks, crack, end, &measured, &self.scene, time)
+                else {
+                    return;
+                };
+                self.begin_increment(crack, end, &advance, &measured);
+                if self.state.cracks[crack].ends[slot(end)] != CrackEnd::Tip {
+                    return;
+                }
             }
-            let Some(advance) = growth::advance(&self.state.cracks, crack, end, &measured, &self.scene, time) else {
-                return;
-            };
-            self.add_points(crack, end, &advance.points, advance.state, &measured);
-            self.state.cracks[crack].ends[slot(end)] = advance.end;
-            if !advance.points.is_empty() {
-                self.solver.recut(&self.state.cracks, &[(crack, end)]);
-            }
-            if advance.end != CrackEnd::Tip {
+            if !self.slide(crack, end, &measured, time) {
+                if increment == 0 {
+                    self.rest(crack, end, false);
+                }
                 return;
             }
             let gauge = Gauge { scene: &self.scene, elastic: &self.elastic };
             measured = gauge.measure(self.solver.observed(), &self.state.cracks, crack, end);
         }
+    }
+
+    /// Sets a tip on its way through an increment, or at its end where tips only jump or the increment is not like others.
+    fn begin_increment(&mut self, crack: usize, end: End, advance: &Advance, measured: &Measured) {
+        let from = self.state.cracks[crack].tip_position(end);
+        match advance.points[..] {
+            [target] if self.solver.slides() && advance.end == CrackEnd::Tip && advance.state == TipState::Growing => {
+                self.add_points(crack, end, &[from + (target - from) * FIRST_PART], TipState::Growing);
+                if let Some(tip) = &mut self.state.cracks[crack].tips[slot(end)] {
+                    tip.target = Some(target);
+                }
+            }
+            _ => {
+                let length = self.add_points(crack, end, &advance.points, advance.state);
+                self.state.crack_energy += measured.released.max(0.0) * length;
+            }
+        }
+        self.state.cracks[crack].ends[slot(end)] = advance.end;
+        if !advance.points.is_empty() {
+            self.solver.recut(&self.state.cracks, &[(crack, end)]);
+        }
+    }
+
+    /// Lets a tip run through its increment as far as it can pay. Whether it has come to the end of it.
+    ///
+    /// What the tip takes out of the body on the way is what the way costs: the energy balance holds over every stretch, not only at the moment when growth begins.
+    fn slide(&mut self, crack: usize, end: End, measured: &Measured, time: f64) -> bool {
+        let line = &self.state.cracks[crack];
+        let Some(tip) = &line.tips[slot(end)] else { return false };
+        let Some(target) = tip.target else { return true };
+        let from = line.tip_position(end);
+        let left = (target - from).norm();
+        let (cost, most) = match growth::cost(line, end, measured, &self.scene, time) {
+            Cost::Scheduled(due) => (0.0, due),
+            Cost::Energy(cost) => (cost, f64::INFINITY),
+        };
+        let most = most.min(left).min(-tip.ahead_of_limit);
+        let slack = BALANCE_CELLS * self.scene.cell_size * cost;
+        let balance = tip.balance.min(slack);
+        let release = self.solver.release(&self.state.cracks, crack, end);
+        let distance = affordable(most, |distance| balance + release(distance) - cost * distance);
+        let arrives = distance >= left;
+        if !arrives && distance < LEAST_SLIDE * self.scene.cell_size {
+            return false;
+        }
+        let taken = release(distance);
+        let to = if arrives { target } else { from + (target - from) * (distance / left) };
+        let line = &mut self.state.cracks[crack];
+        line.move_end(end, to);
+        if let Some(tip) = &mut line.tips[slot(end)] {
+            tip.take_up(distance);
+            tip.balance = (balance + taken - cost * distance).max(0.0);
+            if arrives {
+                tip.target = None;
+            }
+        }
+        self.state.crack_energy += taken;
+        self.solver.slide(&self.state.cracks, crack, end);
+        arrives
     }
 
     /// A tip that does not grow in this step; `held`: by the speed limit alone.
@@ -112,25 +198,19 @@ impl Simulation {
         }
     }
 
-    /// Adds points to an end, and to the books what they cost.
-    fn add_points(&mut self, crack: usize, end: End, points: &[Point], state: TipState, measured: &Measured) {
+    /// Adds points to an end. Returns the length that they add [m].
+    fn add_points(&mut self, crack: usize, end: End, points: &[Point], state: TipState) -> f64 {
         let line = &mut self.state.cracks[crack];
         let before = line.length();
         for &p in points {
             line.push(end, p);
         }
         let length = line.length() - before;
-        self.state.crack_energy += measured.j_integral.max(0.0) * length;
         if let Some(tip) = &mut line.tips[slot(end)] {
             tip.state = state;
-            tip.grown += length;
-            tip.since_division += length;
-            tip.ahead_of_limit += length;
-            tip.steps_at_rest = 0;
-            if let Some(guide) = &mut tip.guide {
-                guide.walk(length);
-            }
+            tip.take_up(length);
         }
+        length
     }
 
     /// Divides a tip: it goes on along the left branch, a new crack that begins at it along the right one.
@@ -138,7 +218,8 @@ impl Simulation {
         let from = self.state.cracks[crack].tip_position(end);
         let [left, right] = branches;
         // The first length of both together releases what one straight on would have.
-        self.add_points(crack, end, &left, TipState::Growing, measured);
+        let length = self.add_points(crack, end, &left, TipState::Growing);
+        self.state.crack_energy += measured.released.max(0.0) * length;
         let mut points = vec![from];
         points.extend(right);
         let mut twin = Tip::new(None);
@@ -169,6 +250,26 @@ impl Simulation {
             }
         }
     }
+}
+
+/// The farthest way, up to `most`, at the end of which `balance` is not negative. The balance is concave: softening gives less the farther it goes.
+fn affordable(most: f64, balance: impl Fn(f64) -> f64) -> f64 {
+    if most <= 0.0 {
+        return 0.0;
+    }
+    if balance(most) >= 0.0 {
+        return most;
+    }
+    let (mut enough, mut too_far) = (0.0, most);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (enough + too_far);
+        if balance(middle) >= 0.0 {
+            enough = middle;
+        } else {
+            too_far = middle;
+        }
+    }
+    enough
 }
 
 fn live_tips(cracks: &[Crack]) -> Vec<(usize, End)> {

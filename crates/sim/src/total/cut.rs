@@ -28,11 +28,22 @@ pub(super) struct CutParticles {
     first: Vec<u32>,
     /// Entries of all rows.
     entries: Vec<Entry>,
+    /// Displacement gradient of each row that no field accounts for: see [`CutParticles::set_misfit`].
+    misfit: Vec<[f64; 4]>,
+    /// Rows that have one.
+    strained: Vec<u32>,
 }
 
 impl CutParticles {
     pub(super) fn new(particles: usize) -> Self {
-        Self { row: vec![NONE; particles], particle: Vec::new(), first: vec![0], entries: Vec::new() }
+        Self {
+            row: vec![NONE; particles],
+            particle: Vec::new(),
+            first: vec![0],
+            entries: Vec::new(),
+            misfit: Vec::new(),
+            strained: Vec::new(),
+        }
     }
 
     /// Entries of a particle, if it is on the general path.
@@ -45,11 +56,42 @@ impl CutParticles {
         &self.entries[self.first[row] as usize..self.first[row + 1] as usize]
     }
 
-    /// Calls `visit` with every particle and its entries.
-    pub(super) fn for_each(&self, mut visit: impl FnMut(usize, &[Entry])) {
-        for (row, &particle) in self.particle.iter().enumerate() {
-            visit(particle as usize, self.row_entries(row));
+    /// What the displacement gradient of a particle is more than its fields make it.
+    pub(super) fn misfit_of(&self, particle: usize) -> Matrix {
+        let row = self.row[particle];
+        if row == NONE { Matrix::zeros() } else { self.misfit_of_row(row as usize) }
+    }
+
+    fn misfit_of_row(&self, row: usize) -> Matrix {
+        let [a, b, c, d] = self.misfit[row];
+        Matrix::new(a, b, c, d)
+    }
+
+    /// Makes the displacement gradient of a particle on the general path more than its fields make it.
+    ///
+    /// When a crack turns, what lies ahead of its tip between the old and the new direction changes sides, and is attached to fields that may lie a good part of
+    /// a cell away from those it had. Its strain must not jump for that: the difference is kept, and let go of slowly enough for the lattice to follow.
+    pub(super) fn set_misfit(&mut self, particle: usize, misfit: Matrix) {
+        let row = self.row[particle];
+        if row == NONE {
+            return;
         }
+        let was_strained = self.misfit[row as usize] != [0.0; 4];
+        self.misfit[row as usize] = [misfit.m11, misfit.m12, misfit.m21, misfit.m22];
+        if !was_strained && misfit != Matrix::zeros() {
+            self.strained.push(row);
+        }
+    }
+
+    /// Lets go of all misfits but the part `kept`.
+    pub(super) fn relax_misfits(&mut self, kept: f64) {
+        let misfit = &mut self.misfit;
+        self.strained.retain(|&row| {
+            let of = &mut misfit[row as usize];
+            let is_left = of.iter().any(|x| x.abs() > NO_MISFIT);
+            *of = if is_left { of.map(|x| x * kept) } else { [0.0; 4] };
+            is_left
+        });
     }
 
     /// Puts new stencils in the place of old ones; particles that had none are added.
@@ -76,6 +118,7 @@ impl CutParticles {
         first.push(all.len() as u32);
         self.first = first;
         self.entries = all;
+        self.misfit.resize(self.particle.len(), [0.0; 4]);
     }
 }
 
@@ -100,6 +143,9 @@ impl Probe {
         value
     }
 }
+
+/// A misfit below this is round-off [–].
+const NO_MISFIT: f64 = 1e-15;
 
 /// How far beside a crack the side of a face point is decided, in cells.
 const NUDGE: f64 = 1e-6;
@@ -217,12 +263,18 @@ impl Total {
         }
     }
 
-    /// Adds the forces of the particles on the general path.
-    pub(super) fn add_cut_forces(&self, u: &FieldVectors, force_x: &mut [f64], force_y: &mut [f64]) {
+    /// Adds the forces of the particles on the general path, with or without their misfits.
+    pub(super) fn add_cut_forces(
+        &self,
+        u: &FieldVectors,
+        with_misfits: bool,
+        force_x: &mut [f64],
+        force_y: &mut [f64],
+    ) {
         let cut = &self.state.cut;
         for (row, &particle) in cut.particle.iter().enumerate() {
             let entries = cut.row_entries(row);
-            let mut h = Matrix::zeros();
+            let mut h = if with_misfits { cut.misfit_of_row(row) } else { Matrix::zeros() };
             for e in entries {
                 let (x, y) = (u[0][e.field as usize], u[1][e.field as usize]);
                 h.m11 += x * e.gradient[0];
@@ -326,19 +378,17 @@ impl Total {
 
     /// Probes of both faces of a crack.
     pub(super) fn face_probes(&self, crack: &Crack) -> [Vec<Probe>; 2] {
-        let hair = NUDGE * self.grid.cell_size;
-        let n = crack.points.len();
-        [Side::Above, Side::Below].map(|side| {
-            (0..n)
-                .map(|k| {
-                    let before = crack.points[k.saturating_sub(1)];
-                    let after = crack.points[(k + 1).min(n - 1)];
-                    let tangent = (after - before).normalize();
-                    let normal = Vector::new(-tangent.y, tangent.x) * side.sign();
-                    self.probe(crack.points[k], crack.points[k] + normal * hair)
-                })
-                .collect()
-        })
+        [Side::Above, Side::Below]
+            .map(|side| (0..crack.points.len()).map(|k| self.face_probe(crack, k, side)).collect())
+    }
+
+    /// Probe of one face at point `k` of a crack.
+    pub(super) fn face_probe(&self, crack: &Crack, k: usize, side: Side) -> Probe {
+        let before = crack.points[k.saturating_sub(1)];
+        let after = crack.points[(k + 1).min(crack.points.len() - 1)];
+        let tangent = (after - before).normalize();
+        let normal = Vector::new(-tangent.y, tangent.x) * side.sign();
+        self.probe(crack.points[k], crack.points[k] + normal * (NUDGE * self.grid.cell_size))
     }
 
     /// Doubles the outline where a crack mouths at it: the two new vertices are the end points of the faces.

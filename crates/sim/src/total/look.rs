@@ -75,7 +75,7 @@ impl Total {
                 {
                     continue;
                 }
-                let h = self.gradient(p, &self.state.displacement);
+                let h = self.strain_of(p);
                 mean += h;
                 found.push((p, h));
             }
@@ -186,7 +186,7 @@ impl Total {
             if whole_cells_are_sound && self.state.cut.entries_of(p).is_none() {
                 continue;
             }
-            let h = self.gradient(p, &self.state.displacement);
+            let h = self.strain_of(p);
             let place = self.particles.rest[p] + self.value(p, &self.state.displacement);
             let fail = |cause: String| SimulationError::Unstable { time, x: place.x, y: place.y, cause };
             let volume_ratio = 1.0 + crate::volume_change(&h);
@@ -259,7 +259,7 @@ impl Total {
                     scaled[axis][d] = q[axis][d] * root[d] * amplitude;
                 }
             }
-            self.internal_forces(&scaled, &mut force);
+            self.lattice_forces(&scaled, false, &mut force);
             let beta = betas.last().copied().unwrap_or(0.0);
             for axis in 0..2 {
                 for d in 0..fields {
@@ -303,7 +303,7 @@ impl Total {
         };
         for p in 0..n {
             let e = &self.elastic[self.particles.material[p] as usize];
-            let h = self.gradient(p, &self.state.displacement);
+            let h = self.strain_of(p);
             frame.position.push(self.particles.rest[p] + self.value(p, &self.state.displacement));
             frame.velocity.push(self.value(p, &self.state.velocity));
             frame.deformation_gradient.push(Matrix::identity() + h);

@@ -4,7 +4,6 @@
 //! P = ∂Ψ/∂F, H = F − I = Σ_i u_i ⊗ ∇₀w_ip, f_i = −Σ_p V_p P_p ∇₀w_ip, then v += Δt f/m and u += Δt v (symplectic Euler, the
 //! leapfrog). Rotation and finite stretch are exact; extreme distortion and plastic flow are out of range.
 
-mod borrow;
 mod boundary;
 mod contact;
 mod cut;
@@ -26,15 +25,16 @@ use crate::fields::Fields;
 use crate::grid::Grid;
 use crate::kernel;
 use crate::particles::Particles;
-use crate::solver::{Handover, Observed, Solver, SolverEnergies};
+use crate::solver::{Handover, Observed, Release, Solver, SolverEnergies};
 use boundary::{Constraint, PointForce};
 use contact::ContactPair;
 use cut::{CutParticles, Probe};
 use fissure_scene::{
-    CrackFrame, End, Kernel, Matrix, OutlineFrame, ParticleFrame, Point, Scene, SolverSettings, Vector,
+    CrackFrame, End, Kernel, Matrix, OutlineFrame, ParticleFrame, Point, Scene, SolverSettings, TipDivision, Vector,
 };
 use rows::{NodeRows, RowConstants, Run};
 use serde::{Deserialize, Serialize};
+use tie::Ties;
 
 /// A vector at every field, x and y apart.
 type FieldVectors = [Vec<f64>; 2];
@@ -46,10 +46,6 @@ struct State {
     fields: Fields,
     /// Mass of each field [kg/m].
     mass: Vec<f64>,
-    /// Mass that light fields hold for others: (field, lender, mass [kg/m]).
-    borrowed: Vec<(u32, u32, f64)>,
-    /// Largest stiffness over mass of a divided field, loans included [1/s²].
-    stiffest: f64,
     /// Displacement u [m].
     displacement: FieldVectors,
     /// Velocity v at half steps [m/s].
@@ -64,9 +60,13 @@ struct State {
     faces: Vec<[Vec<Probe>; 2]>,
     /// Work done by loads, supports and colliders so far [J/m].
     external_work: f64,
+    /// What holds the sides of nodes at tips together.
+    ties: Ties,
     /// Velocities and displacements belong to the same moment: the next kick takes half a step, after which velocities are half a step ahead. A
     /// whole kick here would more than double the amplitude of the shortest waves.
     in_step: bool,
+    /// Length of the last step [s].
+    last_step: f64,
 }
 
 /// The total Lagrangian solver.
@@ -89,7 +89,6 @@ pub(crate) struct Total {
     loads: Vec<Vec<PointForce>>,
     constraints: Vec<Constraint>,
     contacts: Vec<ContactPair>,
-    ties: Vec<tie::Tie>,
     surface: Vec<boundary::SurfaceNode>,
     steps_since_check: u32,
 }
@@ -143,8 +142,6 @@ impl Total {
         let state = State {
             fields: Fields::new(grid.len()),
             mass: vec![0.0; grid.len()],
-            borrowed: Vec::new(),
-            stiffest: 0.0,
             displacement: zeros(),
             velocity: zeros(),
             cut: CutParticles::new(particles.len()),
@@ -152,7 +149,9 @@ impl Total {
             outlines: Vec::new(),
             faces: Vec::new(),
             external_work: 0.0,
+            ties: Ties::default(),
             in_step: true,
+            last_step: 0.0,
         };
         let mut solver = Self {
             scene: scene.clone(),
@@ -169,16 +168,14 @@ impl Total {
             loads: Vec::new(),
             constraints: Vec::new(),
             contacts: Vec::new(),
-            ties: Vec::new(),
             surface: Vec::new(),
             particles,
             steps_since_check: 0,
         };
         solver.cut_all();
-        solver.ties = solver.ties_of(cracks);
-        solver.borrow_mass();
         solver.lay_probes(cracks);
         solver.set_initial_velocities();
+        solver.lay_ties(cracks);
         solver.refresh(cracks)?;
         Ok(solver)
     }
@@ -228,7 +225,12 @@ impl Total {
             && (self.scene.cell_size - 2.0 * self.particles.spacing).abs() < 1e-12 * self.scene.cell_size
     }
 
-    /// Displacement gradient H = F − I of a particle for field values `u`.
+    /// Displacement gradient H = F − I of a particle.
+    fn strain_of(&self, particle: usize) -> Matrix {
+        self.gradient(particle, &self.state.displacement) + self.state.cut.misfit_of(particle)
+    }
+
+    /// Gradient at a particle of field values `u`.
     fn gradient(&self, particle: usize, u: &FieldVectors) -> Matrix {
         let mut h = Matrix::zeros();
         self.for_each_entry(particle, |field, _, g| {
@@ -278,6 +280,12 @@ impl Total {
 
     /// Internal forces for the displacement `u` into `force`.
     fn internal_forces(&self, u: &FieldVectors, force: &mut FieldVectors) {
+        self.lattice_forces(u, true, force);
+        self.state.ties.add_forces(u, force);
+    }
+
+    /// The same without the ties, with or without misfits.
+    fn lattice_forces(&self, u: &FieldVectors, with_misfits: bool, force: &mut FieldVectors) {
         let fields = self.state.fields.len();
         for f in force.iter_mut() {
             f.clear();
@@ -328,26 +336,25 @@ impl Total {
                 pairs.for_each(|(pair, (fx, fy))| row_forces(2 * pair + parity, fx, fy));
             }
         }
-        self.add_cut_forces(u, force_x, force_y);
-        self.add_tie_forces(u, force);
+        self.add_cut_forces(u, with_misfits, force_x, force_y);
     }
 
     fn kinetic(&self) -> f64 {
         let v = &self.state.velocity;
         let twice: f64 =
             (0..self.state.mass.len()).map(|d| self.state.mass[d] * (v[0][d] * v[0][d] + v[1][d] * v[1][d])).sum();
-        0.5 * twice
+        0.5 * twice + self.state.ties.kinetic_energy(&self.state.velocity)
     }
 
     fn strain_energy(&self) -> f64 {
         (0..self.particles.len())
             .map(|p| {
                 let e = &self.elastic[self.particles.material[p] as usize];
-                let h = self.gradient(p, &self.state.displacement);
+                let h = self.strain_of(p);
                 self.particles.volume[p] * crate::energy_density(&h, e.mu, e.lambda)
             })
             .sum::<f64>()
-            + self.tie_energy()
+            + self.state.ties.energy(&self.state.displacement)
     }
 }
 
@@ -359,14 +366,9 @@ impl Solver for Total {
         self.lanczos_time_step()
     }
 
-    fn moving_time_step(&self) -> Option<f64> {
-        // Alone, one field of stiffness over mass ω² allows 2/ω; the whole lattice allows less.
-        (self.state.stiffest > 0.0).then(|| 2.0 / self.state.stiffest.sqrt())
-    }
-
     fn step(
         &mut self,
-        _cracks: &[Crack],
+        cracks: &[Crack],
         time: f64,
         time_step: f64,
         observe: &mut dyn FnMut(&dyn Observed),
@@ -375,6 +377,7 @@ impl Solver for Total {
         self.internal_forces(&self.state.displacement, &mut force);
         self.force = force;
         self.apply_loads(time + 0.5 * time_step);
+        self.state.ties.share(&mut self.force);
         let kick = if self.state.in_step { 0.5 * time_step } else { time_step };
         self.state.in_step = false;
         let decay = (-self.settings.damping * kick).exp();
@@ -393,6 +396,7 @@ impl Solver for Total {
                 acceleration[d] = before;
             }
         }
+        self.apply_drag(cracks, kick);
         if self.settings.crack_contact && !self.contacts.is_empty() {
             self.resolve_crack_contact();
         }
@@ -415,6 +419,8 @@ impl Solver for Total {
                 displacement[d] += time_step * velocity[d];
             }
         }
+        self.settle(time_step);
+        self.state.last_step = time_step;
         self.watch(time + time_step)
     }
 
@@ -424,6 +430,23 @@ impl Solver for Total {
 
     fn recut(&mut self, cracks: &[Crack], changed: &[(usize, End)]) {
         self.take_up(cracks, changed);
+    }
+
+    fn slides(&self) -> bool {
+        self.settings.tip_division == TipDivision::PartlyCut
+    }
+
+    fn release(&self, cracks: &[Crack], crack: usize, end: End) -> Release {
+        self.release_of_ties(&cracks[crack], crack, end)
+    }
+
+    fn take_drag(&mut self, crack: usize, end: End) -> f64 {
+        self.state.ties.take_drag(crack, end)
+    }
+
+    fn slide(&mut self, cracks: &[Crack], crack: usize, end: End) {
+        self.soften_ties(&cracks[crack], crack, end);
+        self.move_last_faces(&cracks[crack], crack, end);
     }
 
     fn observed(&self) -> &dyn Observed {
@@ -437,17 +460,16 @@ impl Solver for Total {
     fn stop(&mut self) {
         self.state.velocity.iter_mut().for_each(|v| v.fill(0.0));
         self.acceleration.iter_mut().for_each(|a| a.fill(0.0));
+        self.state.last_step = 0.0;
         self.state.in_step = true;
     }
 
     fn hand_over(&mut self, cracks: &[Crack]) -> Option<Handover> {
-        // So that the momentum of the particles is that of the fields.
-        self.give_back();
         let u = &self.state.displacement;
         let particles = (0..self.particles.len())
             .map(|p| {
                 let position = self.particles.rest[p] + self.value(p, u);
-                (position, self.value(p, &self.state.velocity), self.gradient(p, u))
+                (position, self.value(p, &self.state.velocity), self.strain_of(p))
             })
             .collect();
         Some(Handover {
@@ -495,6 +517,7 @@ impl Solver for Total {
             linear += momentum;
             angular += place.perp(&momentum);
         }
+        angular += self.state.ties.spin(u, v);
         (linear, angular)
     }
 

@@ -8,10 +8,14 @@ use super::Total;
 use super::cut::Entry;
 use super::refresh::Near;
 use crate::crack::{Crack, slot};
-use fissure_scene::{CrackEnd, End, Point, Vector, bounds};
+use crate::crossing::Side;
+use fissure_scene::{CrackEnd, End, Matrix, Point, Vector, bounds};
 
 /// Stencils are laid anew within so many cells of what has changed of a crack: the window of the division, the kernel, and some room.
 const REACH: f64 = 6.0;
+
+/// A strain that changes by less than this part of itself has not changed.
+const ROUND_OFF: f64 = 1e-12;
 
 /// A field with less than this part of a particle's mass has lost all but round-off.
 const NO_MASS: f64 = 1e-9;
@@ -51,7 +55,7 @@ impl Total {
         let points_before: Vec<usize> = self.state.faces.iter().map(|faces| faces[0].len()).collect();
         let boxes: Vec<(Point, Point)> =
             changed.iter().map(|&(crack, end)| self.changed_box(&cracks[crack], end)).collect();
-        self.recut_particles(cracks, &boxes);
+        self.recut_particles(&boxes);
         self.refresh_probes(cracks, changed, &boxes);
         self.refresh_near(&Near::new(boxes, cracks, changed, &points_before), cracks);
     }
@@ -68,7 +72,7 @@ impl Total {
         (low - reach, high + reach)
     }
 
-    fn recut_particles(&mut self, cracks: &[Crack], boxes: &[(Point, Point)]) {
+    fn recut_particles(&mut self, boxes: &[(Point, Point)]) {
         let mut affected: Vec<usize> = Vec::new();
         for &(low, high) in boxes {
             self.for_each_particle_in(low, high, |p| {
@@ -102,18 +106,22 @@ impl Total {
         }
         affected.sort_unstable();
         affected.dedup();
+        let strains: Vec<Matrix> = affected.iter().map(|&p| self.strain_of(p)).collect();
         let mut stencils = Vec::with_capacity(affected.len());
         let mut changes: Vec<Change> = Vec::new();
-        for p in affected {
+        for &p in &affected {
             let entries = self.make_entries(p);
             self.note_changes(p, &entries, &mut changes);
             stencils.push((p, entries));
         }
-        self.give_back();
         self.hand_over(&changes);
         self.state.cut.replace(stencils);
-        self.ties = self.ties_of(cracks);
-        self.borrow_mass();
+        for (&p, strain) in affected.iter().zip(strains) {
+            let misfit = strain - self.gradient(p, &self.state.displacement);
+            // What only sums in another order has not changed.
+            let is_real = misfit.norm() > ROUND_OFF * strain.norm();
+            self.state.cut.set_misfit(p, if is_real { misfit } else { Matrix::zeros() });
+        }
     }
 
     /// Notes per node how the weights of a particle move between its fields.
@@ -193,6 +201,16 @@ impl Total {
                 }
             }
             self.state.mass[d] = total;
+        }
+    }
+
+    /// The faces of a crack whose last point at one end has moved along its last segment.
+    pub(super) fn move_last_faces(&mut self, crack: &Crack, index: usize, end: End) {
+        let n = crack.points.len();
+        // The point before has a tangent that depends on the last one only by its direction, which stays.
+        let last = if end == End::Start { 0 } else { n - 1 };
+        for (face, side) in [Side::Above, Side::Below].into_iter().enumerate() {
+            self.state.faces[index][face][last] = self.face_probe(crack, last, side);
         }
     }
 

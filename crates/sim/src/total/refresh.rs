@@ -56,7 +56,6 @@ impl Total {
         self.constraints = self.constraints_of_supports()?;
         self.surface = self.surface_nodes();
         self.contacts = self.contact_pairs(cracks);
-        self.ties = self.ties_of(cracks);
         Ok(())
     }
 
@@ -67,7 +66,7 @@ impl Total {
         self.constraints = self.constraints_near(near);
         self.surface = self.surface_near(near);
         self.contacts = self.contacts_near(near, cracks);
-        self.ties = self.ties_of(cracks);
+        self.lay_ties_near(near, cracks);
     }
 
     fn refresh_masses(&mut self) {

@@ -45,6 +45,7 @@ fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationErr
         let settled = START * arrival + 2.0 * 4.0 * plate.cell_size / elastic.shear_wave_speed();
         let g = crack_speed_factors(&elastic, SPEED)[0] * universal_function(&elastic, SPEED).powi(2);
         let release = |t: f64| plate.mode_1(t).powi(2) / elastic.effective_modulus;
+        let mut taken = (f64::NAN, 0.0, 0.0, f64::NAN);
         let (mut before, mut moving, mut squares) = ((0.0, 0.0), (0.0, 0.0), 0.0);
         tally.run(&mut simulation, |now, time| {
             let ratio = now.tips()[0].j_integral / release(time);
@@ -53,6 +54,14 @@ fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationErr
             } else if time > settled {
                 moving = (moving.0 + ratio, moving.1 + 1.0);
                 squares += (ratio - g) * (ratio - g);
+                let energies = now.energies();
+                if taken.0.is_nan() {
+                    taken = (energies.crack, 0.0, now.tips()[0].length, energies.crack);
+                }
+                let length = now.tips()[0].length;
+                taken.1 += g * release(time) * (length - taken.2);
+                taken.2 = length;
+                taken.3 = energies.crack;
             }
             ControlFlow::Continue(())
         })?;
@@ -61,6 +70,7 @@ fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationErr
         tally.relative(format!("mean J E'/K_I² at 1500 m/s, {of}"), "", moving.0 / moving.1, g, 0.1);
         let scatter = 100.0 * (squares / moving.1).sqrt() / g;
         tally.absolute(format!("rms of J against the reference at 1500 m/s, {of}"), "%", scatter, 0.0, None);
+        tally.relative(format!("energy taken by ∫G da, {of}"), "", (taken.3 - taken.0) / taken.1, 1.0, None);
         let run = simulation.tips()[0].length - x;
         let asked = SPEED * (END - START) * arrival;
         tally.relative(format!("length run at the end, {of}"), "m", run, asked, None);
