@@ -33,9 +33,11 @@ pub(crate) struct TipCut {
 impl TipCut {
     /// Where nothing else is done at the tip. K_I of an edge crack of 8 cells over 80 places of the tip in a cell: −1.7 to +1.7 %, standard deviation 0.9 %.
     pub(crate) const PLAIN: Self = Self { node_ahead: 0.3, shares: true };
-    /// Where ties hold the two sides of a node together until the tip has passed it. Nodes are split before their ties begin to soften, by more than an
-    /// increment of growth, within which the division stays as it is.
-    pub(crate) const TIED: Self = Self { node_ahead: 0.8, shares: false };
+
+    /// Where ties hold the two sides of a node together until the tip has passed it.
+    pub(crate) fn tied(node_ahead: f64) -> Self {
+        Self { node_ahead, shares: false }
+    }
 }
 
 /// One end of a crack line, for the division.

@@ -143,7 +143,7 @@ pub(crate) trait Solver: std::fmt::Debug + Send {
         Box::new(|_| 0.0)
     }
 
-    /// Energy that drag behind a growing tip has taken out of the body since the last call [J/m].
+    /// Energy that drag behind a tip has taken out of the body since the last call [J/m].
     fn take_drag(&mut self, _crack: usize, _end: End) -> f64 {
         0.0
     }

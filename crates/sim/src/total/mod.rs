@@ -202,7 +202,8 @@ impl Total {
         let beyond = 2.0 * reach * scene.cell_size;
         let lines: Vec<CrackLine> =
             cracks.iter().enumerate().map(|(i, c)| c.line(i, c.points.clone(), beyond)).collect();
-        Division::new(&lines, scene.solver.tip_division, TipCut::TIED, scene.cell_size, scene.particle_spacing, reach)
+        let cut = TipCut::tied(tie::split_ahead(scene.growth.increment));
+        Division::new(&lines, scene.solver.tip_division, cut, scene.cell_size, scene.particle_spacing, reach)
     }
 
     /// Calls `visit` with every particle in a box, which may be a row larger, row by row.

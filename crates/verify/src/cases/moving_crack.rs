@@ -2,7 +2,7 @@
 //!
 //! Setup in [`super::stepped_plate`]. The crack rests until 1.5 t_c and then runs at 1500 m/s (0.51 c_R), by a guide with a schedule. Reference (Freund 1990): G = g(v) K_I²/E' with
 //! the K_I the resting crack would have, g = A_I k²; that is, J falls by the factor 0.5165 at once. J is compared while the crack runs, from the time on at which
-//! its domain (4 cells) has been crossed by waves, to 2.4 t_c. Cells are counted over half the height of the plate.
+//! its domain has been crossed by waves, to 2.4 t_c. Cells are counted over half the height of the plate.
 
 use super::stepped_plate::SteppedPlate;
 use crate::case::{Case, Options};
@@ -42,7 +42,8 @@ fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationErr
         });
         let mut simulation = Simulation::new(&problem.scene)?;
         // Until waves have crossed the domain and come back.
-        let settled = START * arrival + 2.0 * 4.0 * plate.cell_size / elastic.shear_wave_speed();
+        let settled =
+            START * arrival + 2.0 * problem.scene.solver.j_radius * plate.cell_size / elastic.shear_wave_speed();
         let g = crack_speed_factors(&elastic, SPEED)[0] * universal_function(&elastic, SPEED).powi(2);
         let release = |t: f64| plate.mode_1(t).powi(2) / elastic.effective_modulus;
         let mut taken = (f64::NAN, 0.0, 0.0, f64::NAN);
