@@ -69,18 +69,18 @@ fn step_load() {
     within(&coarse("step-load", 20.0), "rms error of K_I", 2.0);
 }
 
-/// Measured 8.1 % (target 10 % at 40 cells).
+/// Measured 3.4 % (target 10 % at 40 cells).
 #[test]
 fn moving_crack() {
-    within(&coarse("moving-crack", 20.0), "mean J E'/K_I² at 1500 m/s", 0.1);
+    within(&coarse("moving-crack", 20.0), "mean J E'/K_I² at 1500 m/s", 0.06);
 }
 
-/// Measured 19 % at 2.4 t_c (target 10 % at 40 cells).
+/// Measured 6.0 % at 2.4 t_c (target 10 % at 40 cells).
 #[test]
 fn crack_motion() {
     let report = coarse("crack-motion", 20.0);
     met(&report, "start");
-    within(&report, "Δa at 2.4 t_c", 0.22);
+    within(&report, "Δa at 2.4 t_c", 0.1);
     met(&report, "highest speed");
 }
 
@@ -101,11 +101,12 @@ fn impacted_notch() {
     within(&report, "K_II/K_Ic at the start", 0.02);
 }
 
-/// Measured 0.9 % (target 3 % at 80 cells).
+/// Measured 0.9 % (target 3 % at 80 cells), and 4.3 % of the run at 14 µs.
 #[test]
 fn branching_plate() {
     let report = coarse("branching-plate", 40.0);
     within(&report, "start of growth", 0.015);
+    within(&report, "run at 14 µs", 0.08);
     met(&report, "mean speed");
 }
 
@@ -151,4 +152,14 @@ fn ten_turns() {
     let report = coarse("ten-turns", 4.0);
     met(&report, "change of angular momentum, relative, without contact");
     met(&report, "momentum by mass times rim speed, without contact");
+}
+
+/// Measured 1.8 % of the length, 0.8 % of J/G_c and 0.4 % of the work (targets 3, 3 and 2 % at 8 cells): the crack takes what it costs.
+#[test]
+fn cantilever_growth() {
+    let report = coarse("cantilever-growth", 4.0);
+    met(&report, "opening D at the start");
+    met(&report, "length at the end");
+    met(&report, "mean of J/G_c");
+    within(&report, "U + T + G_c Δa", 0.01);
 }

@@ -22,7 +22,7 @@ pub fn solver_preset(preset: SolverPreset) -> (SolverSettings, GrowthSettings) {
                 crack_friction: 0.0,
                 tip_division: TipDivision::PartlyCut,
                 j_method: JMethod::Domain,
-                j_radius: 6.0,
+                j_radius: 4.0,
                 area_term: true,
                 mode_split: ModeSplit::Interaction,
             },

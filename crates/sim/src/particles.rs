@@ -215,8 +215,5 @@ pub(crate) fn distance_to_rings(region: &Region, point: Point) -> f64 {
 
 /// Distance from `point` to the segment `a`–`b` [m].
 pub(crate) fn distance_to_segment(point: Point, a: Point, b: Point) -> f64 {
-    let along = b - a;
-    let length_squared = along.norm_squared();
-    let t = if length_squared > 0.0 { ((point - a).dot(&along) / length_squared).clamp(0.0, 1.0) } else { 0.0 };
-    (point - (a + along * t)).norm()
+    (point - fissure_scene::nearest_on_segment(a, b, point)).norm()
 }

@@ -2,7 +2,7 @@
 
 use super::{Advance, LAST_LIGAMENT};
 use crate::crack::{Crack, ENDS, slot};
-use fissure_scene::{CrackEnd, End, Point, Region, TipState, Vector, orientation, segments_touch};
+use fissure_scene::{CrackEnd, End, Point, Region, TipState, Vector, nearest_on_segment, orientation, segments_touch};
 
 /// Its own crack, the one it branched from and its branches count as beside a tip only this many cells from where they part.
 const PARTED: f64 = 8.0;
@@ -100,7 +100,7 @@ pub(super) fn beside(cracks: &[Crack], index: usize, end: End, toward: Vector, h
             if other == index && behind < PARTED * h {
                 continue;
             }
-            let at = nearest_on_segment(from, a, b);
+            let at = nearest_on_segment(a, b, from);
             let distance = (at - from).norm();
             let is_behind = (at - from).dot(&toward) < -0.5 * distance;
             if distance > 0.0 && !is_behind && distance < LAST_LIGAMENT * h && nearest.is_none_or(|n| distance < n.0) {
@@ -109,15 +109,6 @@ pub(super) fn beside(cracks: &[Crack], index: usize, end: End, toward: Vector, h
         }
     }
     nearest.map(|n| n.1)
-}
-
-fn nearest_on_segment(place: Point, a: Point, b: Point) -> Point {
-    let along = b - a;
-    let square = along.norm_squared();
-    if square == 0.0 {
-        return a;
-    }
-    a + along * ((place - a).dot(&along) / square).clamp(0.0, 1.0)
 }
 
 /// Where the way from `p` to `q` meets the segment `a`–`b`: (fraction of the way, place), the start of the way left out.

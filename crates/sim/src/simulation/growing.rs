@@ -18,10 +18,10 @@ const FIRST_PART: f64 = 1e-3;
 const BALANCE_CELLS: f64 = 0.05;
 
 /// Ways shorter than this are not worth going, in cells.
-const LEAST_SLIDE: f64 = 1e-6;
+const LEAST_SLIDE: f64 = 1e-12;
 
-/// Halvings of an increment in search of what a tip can pay.
-const HALVINGS: u32 = 24;
+/// Halvings of an increment in search of what a tip can pay: down to round-off, or scenes of another size would part.
+const HALVINGS: u32 = 54;
 
 /// A growing tip that has not moved for so many steps is at rest.
 const ARREST_STEPS: u32 = 50;

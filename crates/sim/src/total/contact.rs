@@ -22,7 +22,7 @@ pub(super) struct ContactPair {
 }
 
 /// Faces that overlap by less than this part of their displacement touch by round-off only: where a crack has just come, its faces still lie on each other.
-const ROUND_OFF: f64 = 1e-12;
+pub(super) const ROUND_OFF: f64 = 1e-12;
 
 impl Total {
     /// All pairs of fields that face each other across one crack.

@@ -17,6 +17,7 @@
 //! m = k/ω², ω the highest frequency of a plane wave on the uncut lattice. It acts on the difference of the two fields alone, so momentum, gravity and rigid motion do
 //! not see it, and by Rayleigh's quotient (K + k)/(M + m) ≤ max(K/M, k/m) no mode is faster than one of the lattice without ties.
 
+use super::contact::ROUND_OFF;
 use super::refresh::Near;
 use super::{FieldVectors, Total};
 use crate::crack::{Crack, ENDS, slot};
@@ -24,7 +25,7 @@ use crate::division::{CrossedSet, WINDOW, facing};
 use crate::elastic::Elastic;
 use crate::kernel;
 use crate::solver::Release;
-use fissure_scene::{CrackEnd, End, Point, TipDivision, Vector};
+use fissure_scene::{CrackEnd, End, Point, TipDivision, TipState, Vector};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -403,11 +404,12 @@ impl Total {
         }
     }
 
-    /// Drags at the opening of the ties around live tips, for a kick of `kick` [s].
+    /// Drags at the opening of the ties around growing tips, for a kick of `kick` [s]. Only at its length: a body that turns, and the openings with it, is not dragged
+    /// at. Nor is a crack at rest, whose body keeps its energy.
     pub(super) fn apply_drag(&mut self, cracks: &[Crack], kick: f64) {
         for (&(crack, slot), ties) in &mut self.state.ties.of_tip {
             let tip = cracks[crack as usize].tips[slot as usize].as_ref();
-            if tip.is_none_or(|tip| !tip.state.is_live()) {
+            if tip.is_none_or(|tip| tip.state != TipState::Growing) {
                 continue;
             }
             for tie in ties.iter_mut().filter(|tie| tie.drag > 0.0) {
@@ -416,7 +418,11 @@ impl Total {
                 let reduced = mass_a * mass_b / (mass_a + mass_b);
                 let inertia = reduced + tie.inertia;
                 let kept = 1.0 / (1.0 + tie.drag * kick / inertia);
-                let speed = tie.opening(&self.state.velocity);
+                let u = &self.state.displacement;
+                // What is apart by round-off only has no direction.
+                let least = ROUND_OFF * (u[0][a].abs() + u[1][a].abs() + u[0][b].abs() + u[1][b].abs());
+                let Some(direction) = tie.opening(u).try_normalize(least) else { continue };
+                let speed = direction * direction.dot(&tie.opening(&self.state.velocity));
                 // The impulse works along the displacement of the step, which has the speed that is kept.
                 tie.dragged += inertia * (1.0 - kept) * kept * speed.norm_squared();
                 for axis in 0..2 {
