@@ -149,7 +149,7 @@ pub struct SolverSettings {
 pub struct GrowthSettings {
     /// Whether cracks grow at all.
     pub enabled: bool,
-    /// Length of one increment, in cells.
+    /// Length of one increment, in cells: how far a tip goes before it looks for its direction again.
     pub increment: f64,
     /// Scales K_II in the direction of growth only: 0 straight, 1 physical, above 1 exaggerated.
     pub bending: f64,

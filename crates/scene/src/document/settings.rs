@@ -105,7 +105,7 @@ impl<'de> Deserialize<'de> for TimeStep {
 pub struct GrowthKeys {
     /// Whether cracks grow. Default: true.
     pub enabled: Option<bool>,
-    /// Length of one increment, in cells.
+    /// Length of one increment, in cells: how far a tip goes before it looks for its direction again.
     pub increment: Option<f64>,
     /// How much cracks bend: 0 straight on, 1 physical (default), above 1 exaggerated. Changes the direction only, never the moment.
     pub bending: Option<f64>,
