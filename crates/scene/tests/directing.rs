@@ -3,9 +3,9 @@
 
 mod common;
 
-use common::{Folder, PLATE, scene_with};
+use common::{Folder, PLATE, paint, scene_with};
 use fissure_scene::{Branching, LoadErrorKind, Point, Scene, ToughnessKind, load, material_presets, segment_distance};
-use image::{GrayImage, ImageBuffer, Luma, LumaA, Rgb, Rgba};
+use png::{BitDepth, ColorType};
 
 fn plate(rest: &str) -> Scene {
     scene_with(&format!("{PLATE}{rest}"), None, &[]).unwrap()
@@ -72,32 +72,34 @@ fn pictures_lie_on_bodies_the_right_way_up() {
         None,
     );
     let at = |x, y| load(&folder.path(), &[]).unwrap().toughness_factor(0, Point::new(x, y));
-    let grey = GrayImage::from_fn(2, 2, |column, row| Luma([[[255, 0], [51, 102]][row as usize][column as usize]]));
-    grey.save(folder.file("paint.png")).unwrap();
+    let paint =
+        |color, depth, columns, samples: &[u8]| paint(&folder.file("paint.png"), color, depth, columns, samples);
+    paint(ColorType::Grayscale, BitDepth::Eight, 2, &[255, 0, 51, 102]);
     // Centres of the pixels of a plate from -10 to 10: 255 and 0 above, 51 and 102 below.
     let expected = [(5.0, 5.0, 0.5), (-5.0, -5.0, 0.9), (5.0, -5.0, 1.3), (-5.0, 5.0, 3.0 * 2.5), (0.0, -5.0, 1.1)];
     for (x, y, factor) in expected {
         assert!((at(x, y) - factor).abs() < 1e-14, "{x} {y}: {} for {factor}", at(x, y));
     }
     // The same in 16 bits and in colour; transparent is white.
-    let deep = ImageBuffer::from_fn(2, 2, |c, r| Luma([u16::from(grey.get_pixel(c, r).0[0]) * 257]));
-    deep.save(folder.file("paint.png")).unwrap();
+    paint(ColorType::Grayscale, BitDepth::Sixteen, 2, &[255, 255, 0, 0, 51, 51, 102, 102]);
     assert!(expected.iter().all(|&(x, y, factor)| (at(x, y) - factor).abs() < 1e-14));
-    ImageBuffer::from_pixel(1, 1, Rgb([255_u8, 0, 0])).save(folder.file("paint.png")).unwrap();
+    paint(ColorType::Rgb, BitDepth::Eight, 1, &[255, 0, 0]);
     assert!((at(0.0, 0.0) - (0.5 + 2.0 * 0.2126)).abs() < 1e-14);
-    ImageBuffer::from_pixel(1, 1, LumaA([0_u8, 0])).save(folder.file("paint.png")).unwrap();
+    paint(ColorType::GrayscaleAlpha, BitDepth::Eight, 1, &[0, 0]);
     assert_eq!(at(0.0, 0.0), 2.5);
-    ImageBuffer::from_pixel(1, 1, Rgba([0_u8, 0, 0, 51])).save(folder.file("paint.png")).unwrap();
+    paint(ColorType::Rgba, BitDepth::Eight, 1, &[0, 0, 0, 51]);
     assert!((at(0.0, 0.0) - (0.5 + 2.0 * 0.8)).abs() < 1e-14);
+    // Two bits a pixel: 0, 1/3, 2/3, 1.
+    paint(ColorType::Grayscale, BitDepth::Two, 1, &[0b0100_0000]);
+    assert!((at(0.0, 0.0) - (0.5 + 2.0 / 3.0)).abs() < 1e-14);
 }
 
 #[test]
 fn pictures_are_part_of_the_scene() {
     let folder = Folder::new(&format!("{PLATE}[[toughness]]\nimage = 'paint.png'\nmin = [0, 0]\n"), None);
     let paint = |grey: u8| {
-        GrayImage::from_fn(900, 600, |x, _| Luma([if x < 450 { grey } else { 255 }]))
-            .save(folder.file("paint.png"))
-            .unwrap();
+        let samples: Vec<u8> = (0..900 * 600).map(|k| if k % 900 < 450 { grey } else { 255 }).collect();
+        paint(&folder.file("paint.png"), ColorType::Grayscale, BitDepth::Eight, 900, &samples);
         load(&folder.path(), &[]).unwrap()
     };
     let (black, again, dark) = (paint(0), paint(0), paint(1));
@@ -116,8 +118,7 @@ fn pictures_are_part_of_the_scene() {
 fn pictures_that_cannot_be_used_are_named() {
     let told = |file: Option<&[u8]>, rest: &str| {
         let folder = Folder::new(&format!("{PLATE}[[toughness]]\nimage = 'paint.png'\n{rest}"), None);
-        let grey = GrayImage::from_pixel(1, 1, Luma([0]));
-        grey.save(folder.file("paint.png")).unwrap();
+        paint(&folder.file("paint.png"), ColorType::Grayscale, BitDepth::Eight, 1, &[0]);
         match file {
             None => std::fs::remove_file(folder.file("paint.png")).unwrap(),
             Some([]) => {}
@@ -126,10 +127,16 @@ fn pictures_that_cannot_be_used_are_named() {
         let error = load(&folder.path(), &[]).unwrap_err();
         (error.kind, error.line(), error.to_string())
     };
+    // The head of a picture of 100,000 by 100,000 pixels.
+    let mut vast = Vec::new();
+    let mut encoder = png::Encoder::new(&mut vast, 100_000, 100_000);
+    encoder.set_color(ColorType::Rgba);
+    encoder.write_header().unwrap().write_chunk(png::chunk::IDAT, &[0]).unwrap();
     type Mistake<'a> = (Option<&'a [u8]>, &'a str, LoadErrorKind, Option<usize>, &'a str);
-    let mistakes: [Mistake<'_>; 9] = [
+    let mistakes: [Mistake<'_>; 10] = [
         (None, "", LoadErrorKind::InputFile, None, "cannot read the image"),
         (Some(b"<svg/>"), "", LoadErrorKind::InputFile, None, "not a PNG image"),
+        (Some(&vast), "", LoadErrorKind::InputFile, None, "its pixels take more than 1024 MiB"),
         (Some(b"\x89PNG\r\n\x1a\n\0\0"), "", LoadErrorKind::InputFile, None, "not a PNG image"),
         (
             Some(b""),

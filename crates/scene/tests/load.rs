@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{Folder, PLATE, scene_with};
+use common::{Folder, PLATE, paint, scene_with};
 use fissure_scene::{
     BoxSide, ColliderShape, Kernel, LoadErrorKind, LoadKind, Point, Scene, Selection, SolverPreset, Transfer, load,
     schema, solver_preset, template,
@@ -40,7 +40,7 @@ fn the_templates_comments_load() {
         text.replace(key, &key[2..])
     });
     let folder = Folder::new(&text, None);
-    image::GrayImage::new(4, 4).save(folder.file("toughness.png")).unwrap();
+    paint(&folder.file("toughness.png"), png::ColorType::Grayscale, png::BitDepth::Eight, 4, &[0; 16]);
     let scene = load(&folder.path(), &[]).unwrap();
     assert_eq!((scene.bodies[0].inclusions.len(), scene.toughness.len(), scene.cracks.len()), (1, 1, 21));
     assert_eq!(scene.cracks[0].end_guide.as_ref().unwrap().schedule.points.len(), 2);

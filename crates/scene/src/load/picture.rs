@@ -1,7 +1,8 @@
 //! Pictures that paint values.
 
 use super::error::{LoadError, read_bytes};
-use image::ImageFormat;
+use png::{BitDepth, Transformations};
+use std::io::Cursor;
 use std::path::Path;
 
 /// A picture in shades of grey.
@@ -21,18 +22,21 @@ impl Picture {
     /// Reads a PNG of any kind. Colours become their luminance as encoded; what is transparent is white.
     pub(crate) fn read(path: &Path) -> Result<Self, LoadError> {
         let bytes = read_bytes(path, "the image")?;
-        let pixels = image::load_from_memory_with_format(&bytes, ImageFormat::Png)
+        let (columns, pixels) = decode(&bytes)
             .map_err(|e| LoadError::file(path, format!("not a PNG image: {e}"), "save it as PNG"))?
-            .into_rgba16();
+            .ok_or_else(|| {
+                let most = format!("its pixels take more than {} MiB", MOST_BYTES >> 20);
+                LoadError::file(path, most, "scale it down: pixels finer than particles are averaged")
+            })?;
         // The weights of Rec. 709, in integers so that grey keeps its value exactly.
-        let light = |[r, g, b, opacity]: [u16; 4]| {
+        let light = |&[r, g, b, opacity]: &[u16; 4]| {
             let full = f64::from(u16::MAX);
             let luminance = 2126 * u64::from(r) + 7152 * u64::from(g) + 722 * u64::from(b);
             let (luminance, opacity) = (luminance as f64 / (10_000.0 * full), f64::from(opacity) / full);
             opacity * luminance + (1.0 - opacity)
         };
-        let light = pixels.rows().rev().flat_map(|row| row.map(|pixel| light(pixel.0))).collect();
-        Ok(Self { bytes, columns: pixels.width() as usize, rows: pixels.height() as usize, light })
+        let light: Vec<f64> = pixels.chunks_exact(columns).rev().flatten().map(light).collect();
+        Ok(Self { bytes, columns, rows: light.len() / columns, light })
     }
 
     /// Light of the picture with at most `columns` × `rows` pixels (each at least 1): means over the larger pixels. Gives
@@ -43,6 +47,29 @@ impl Picture {
         let upright = means(&transposed(&narrow, columns), self.rows, rows);
         (columns, rows, transposed(&upright, rows))
     }
+}
+
+/// Most bytes that the pixels of a picture may take.
+const MOST_BYTES: usize = 1 << 30;
+
+/// Columns and pixels of a PNG as red, green, blue and opacity, row by row from the highest; none when it is too large.
+fn decode(bytes: &[u8]) -> Result<Option<(usize, Vec<[u16; 4]>)>, png::DecodingError> {
+    let mut decoder = png::Decoder::new(Cursor::new(bytes));
+    decoder.set_transformations(Transformations::ALPHA);
+    let mut reader = decoder.read_info()?;
+    let Some(size) = reader.output_buffer_size().filter(|&size| size <= MOST_BYTES) else { return Ok(None) };
+    let mut samples = vec![0; size];
+    let frame = reader.next_frame(&mut samples)?;
+    let samples: Vec<u16> = match frame.bit_depth {
+        BitDepth::Sixteen => samples.chunks_exact(2).map(|pair| u16::from_be_bytes([pair[0], pair[1]])).collect(),
+        // 255 is as white as 65535.
+        _ => samples.iter().map(|&sample| u16::from(sample) * 257).collect(),
+    };
+    let pixels: Vec<[u16; 4]> = match frame.color_type.samples() {
+        2 => samples.chunks_exact(2).map(|p| [p[0], p[0], p[0], p[1]]).collect(),
+        _ => samples.chunks_exact(4).map(|p| [p[0], p[1], p[2], p[3]]).collect(),
+    };
+    Ok(Some((frame.width as usize, pixels)))
 }
 
 /// Means over `count` equal parts of each line of `length` values.

@@ -4,7 +4,9 @@ use super::{Check, finite_points};
 use crate::fault::{KeyPath, SceneFault, show};
 use crate::geometry::{Point, Region, bounds, orientation, signed_area};
 use crate::outline::find_crossing;
-use geo::{Area, BooleanOps};
+use i_overlay::core::fill_rule::FillRule;
+use i_overlay::core::overlay_rule::OverlayRule;
+use i_overlay::float::single::SingleFloatOverlay;
 
 /// A region is finite, simple, oriented, and its holes lie inside and apart.
 pub(crate) fn validate_region(path: &KeyPath, what: &str, region: &Region) -> Check {
@@ -57,10 +59,11 @@ pub(crate) fn overlap(a: &Region, b: &Region) -> f64 {
     if a_low.x >= b_high.x || b_low.x >= a_high.x || a_low.y >= b_high.y || b_low.y >= a_high.y {
         return 0.0;
     }
-    let polygon = |region: &Region| {
-        let ring = |points: &[Point]| geo::LineString::from_iter(points.iter().map(|p| (p.x, p.y)));
-        geo::Polygon::new(ring(&region.exterior), region.holes.iter().map(|h| ring(h)).collect())
+    let rings = |region: &Region| -> Vec<Vec<[f64; 2]>> {
+        region.rings().map(|ring| ring.iter().map(|p| [p.x, p.y]).collect()).collect()
     };
-    let shared = polygon(a).intersection(&polygon(b)).unsigned_area();
+    let shared = rings(a).overlay_as::<i64>(&rings(b), OverlayRule::Intersect, FillRule::NonZero);
+    let area = |ring: &Vec<[f64; 2]>| signed_area(&ring.iter().map(|&[x, y]| Point::new(x, y)).collect::<Vec<_>>());
+    let shared = shared.iter().flatten().map(area).sum::<f64>();
     if shared > 1e-6 * a.area().min(b.area()) { shared } else { 0.0 }
 }
