@@ -173,6 +173,16 @@ fn pictures_that_cannot_be_used_are_named() {
     }
 }
 
+/// Truth: the drawing. Only the free end of the bar of a T can grow, and the two ends of its trunk.
+#[test]
+fn a_crack_may_end_on_another() {
+    let scene = plate("[[crack]]\nline = [[0.001, 0], [0, 5]]\n[[crack]]\nline = [[-5, 0], [5, 0]]\n");
+    let live: Vec<_> = scene.cracks.iter().map(|crack| [crack.start_live, crack.end_live]).collect();
+    assert_eq!(live, [[false, true], [true, true]]);
+    assert_eq!(scene.cracks[0].points[0], scene.cracks[1].points[1]);
+    assert!((scene.cracks[0].points[0] - Point::new(0.001, 0.0)).norm() < 1e-12);
+}
+
 /// Truth: brute force over all pairs; what a flaw must not touch was measured independently of how it was placed.
 #[test]
 fn flaws_become_cracks_apart_from_all_others() {

@@ -251,6 +251,9 @@ fn every_mistake_is_told_with_line_value_and_remedy() {
         (plate("[[flaws]]\nlength = 30\ndensity = 0.1\n"), "", Scene, Some(7), &["only 0 of 40", "make `length` (30 m)"]),
         (plate("[[flaws]]\nlength = 1\ncount = 2\nshape = { circle = { center = [30, 0], radius = 1 } }\n"), "", Scene, Some(8), &["no body reaches"]),
         (plate("[[flaws]]\nlength = 1\ncount = 2\n[[crack]]\nname = 'flaws-1.2'\nline = [[-10, 0], [-5, 0]]\n"), "", Scene, Some(5), &["two", "`flaws-1.2`"]),
+        (plate("[[crack]]\nline = [[-10, 0], [5, 0]]\n[[crack]]\nline = [[0, -5], [0, 5]]\n"), "", Scene, Some(8), &["`crack-2` meets crack `crack-1` at (0, 0)", "end on"]),
+        (plate("[[crack]]\nline = [[-5, 0], [5, 0]]\n[[crack]]\nline = [[0, 0], [0, 5]]\ntips = 'both'\n"), "", Scene, Some(9), &["the start of crack `crack-2`", "on another crack"]),
+        (plate("[[crack]]\nline = [[-5, 0], [5, 0]]\n[[crack]]\nline = [[5, 0], [5, 5]]\n"), "", Scene, Some(8), &["meets", "draw them as one"]),
         (plate("[[flaws]]\nlength = 1\ncount = 2\nlive = 'both'\n"), "", Scene, Some(8), &["unknown key `live`"]),
     ];
     let mut wrong = Vec::new();

@@ -148,9 +148,14 @@ impl Crack {
     fn drawn(scene: &Scene, crack: &fissure_scene::Crack) -> Self {
         let region = &scene.bodies[crack.body].region;
         let tolerance = 1e-6 * scene.cell_size;
+        let is_other = |other: &&fissure_scene::Crack| other.body == crack.body && other.name != crack.name;
         let end_at = |p: Point| {
             let on_ring = crate::particles::distance_to_rings(region, p) <= tolerance;
-            if on_ring || !region.contains(p) { CrackEnd::Mouth } else { CrackEnd::Tip }
+            if on_ring || !region.contains(p) {
+                return CrackEnd::Mouth;
+            }
+            let trunk = scene.cracks.iter().position(|other| is_other(&other) && other.points.contains(&p));
+            trunk.map_or(CrackEnd::Tip, |trunk| CrackEnd::Junction { crack: trunk as u32 })
         };
         let ends = [end_at(crack.points[0]), end_at(crack.points[crack.points.len() - 1])];
         let tip = |end: End, live: bool| {

@@ -12,9 +12,9 @@ pub struct CrackKeys {
     pub name: Option<String>,
     /// Body the crack runs in. Default: the one body it lies in.
     pub body: Option<String>,
-    /// Its line, open. Ends that stick out of the body are cut off at the outline. Required.
+    /// Its line, open. Ends that stick out of the body are cut off at the outline; an end on the line of another crack opens into that one. Required.
     pub line: Line,
-    /// Which ends may grow. Default: every end that lies inside the body.
+    /// Which ends may grow. Default: every end that lies inside the body and on no other crack.
     pub tips: Option<Tips>,
     /// Name of the guide that the only live tip follows.
     pub guide: Option<String>,

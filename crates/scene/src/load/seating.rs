@@ -13,6 +13,8 @@ pub(crate) struct Seated {
     pub(crate) points: Vec<Point>,
     /// Whether the first and the last point lie on the outline.
     pub(crate) mouths: [bool; 2],
+    /// Whether the first and the last point lie on another crack.
+    pub(crate) junctions: [bool; 2],
 }
 
 /// Cuts off what sticks out of the body at the ends, moves ends within `tolerance` of a ring onto it, and makes each
@@ -27,7 +29,40 @@ pub(crate) fn seat_crack(points: &[Point], region: &mut Region, tolerance: f64) 
         }
         points.reverse();
     }
-    Ok(Seated { points, mouths })
+    Ok(Seated { points, mouths, junctions: [false; 2] })
+}
+
+/// Moves ends within `tolerance` of another crack of the same body onto it, and makes each such place a vertex of that crack, so that both are the same
+/// point to the bit. `bodies`: of each crack. Ends that meet ends stay as they are drawn.
+pub(crate) fn seat_on_cracks(cracks: &mut [Seated], bodies: &[usize], tolerance: f64) {
+    for guest in 0..cracks.len() {
+        for end in 0..2 {
+            let Some(&point) = [cracks[guest].points.first(), cracks[guest].points.last()][end] else { continue };
+            if cracks[guest].mouths[end] {
+                continue;
+            }
+            let others = (0..cracks.len()).filter(|&other| other != guest && bodies[other] == bodies[guest]);
+            let places = others.map(|other| {
+                let (piece, place) = nearest_on_polyline(&cracks[other].points, point);
+                ((place - point).norm(), other, piece, place)
+            });
+            let Some((distance, trunk, piece, mut place)) = places.min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
+            let line = &mut cracks[trunk].points;
+            let is_near = |p: &Point, reach: f64| (p - place).norm() <= reach;
+            let (first, last) = (line[0], line[line.len() - 1]);
+            if distance > tolerance || is_near(&first, tolerance) || is_near(&last, tolerance) {
+                continue;
+            }
+            match [piece, piece + 1].into_iter().find(|&k| is_near(&line[k], tolerance * 1e-3)) {
+                Some(vertex) => place = line[vertex],
+                None => line.insert(piece + 1, place),
+            }
+            let own = &mut cracks[guest];
+            let at = if end == 0 { 0 } else { own.points.len() - 1 };
+            own.points[at] = place;
+            own.junctions[end] = true;
+        }
+    }
 }
 
 /// Seats the first point; returns the mouth if it lies on a ring.
@@ -181,6 +216,25 @@ mod tests {
                 .0
                 .contains("ends at the tip")
         );
+    }
+
+    /// Truth: the construction. The bar of a T, drawn a little short of the trunk and a little beyond it, ends on a vertex of the trunk to the bit.
+    #[test]
+    fn the_bar_of_a_t_ends_on_its_trunk() {
+        for short in [0.01, 0.0, -0.01] {
+            let seated = |list: &[(f64, f64)]| seat_crack(&points(list), &mut square(), 1e-3).unwrap();
+            let mut cracks = [seated(&[(-0.5, short), (-0.5, 0.7)]), seated(&[(-0.8, 0.0), (0.8, 0.0)])];
+            seat_on_cracks(&mut cracks, &[0, 0], 0.02);
+            assert_eq!((cracks[0].junctions, cracks[1].junctions), ([true, false], [false, false]));
+            assert_eq!(cracks[1].points, points(&[(-0.8, 0.0), (-0.5, 0.0), (0.8, 0.0)]));
+            assert_eq!(cracks[0].points[0], cracks[1].points[1]);
+            // In another body, or end to end, there is nothing to end on.
+            let mut apart = [seated(&[(-0.5, short), (-0.5, 0.7)]), seated(&[(-0.8, 0.0), (0.8, 0.0)])];
+            seat_on_cracks(&mut apart, &[0, 1], 0.02);
+            let mut ends = [seated(&[(-0.79, short), (-0.5, 0.7)]), seated(&[(-0.8, 0.0), (0.8, 0.0)])];
+            seat_on_cracks(&mut ends, &[0, 0], 0.02);
+            assert!(apart.iter().chain(&ends).all(|crack| crack.junctions == [false; 2]));
+        }
     }
 
     proptest! {

@@ -23,12 +23,24 @@ impl Scene {
             };
             self.validate_crack(&path, crack, body)?;
             for other in &self.cracks[..i] {
+                if other.body != crack.body {
+                    continue;
+                }
+                for (guest, trunk) in [(crack, other), (other, crack)] {
+                    let live = [guest.start_live, guest.end_live];
+                    let ends = [guest.points.first(), guest.points.last()];
+                    for ((end, live), word) in ends.into_iter().zip(live).zip(["start", "end"]) {
+                        if let (Some(&at), true) = (end.filter(|&&end| is_inside(&trunk.points, end)), live) {
+                            return Err(no_tip(&path, &guest.name, word, at, "another crack"));
+                        }
+                    }
+                }
                 if let Some(at) = meeting(&crack.points, &other.points) {
                     let message = format!("crack `{}` meets crack `{}` at {} m", crack.name, other.name, show(at));
                     return Err(SceneFault::new(
                         path.then("line"),
                         message,
-                        "keep the cracks apart, if only by a cell",
+                        "let one end on the line of the other, draw them as one, or keep them apart, if only by a cell",
                     ));
                 }
             }
@@ -52,7 +64,7 @@ impl Scene {
                 return Err(SceneFault::new(line, message, "move it into the body or onto its outline"));
             }
             if live && on_ring(point) {
-                return Err(live_mouth(path, name, end, point));
+                return Err(no_tip(path, name, end, point, "the outline"));
             }
             let Some(guide) = guide else { continue };
             let key = path.then(format!("guide_{end}").as_str());
@@ -86,12 +98,12 @@ pub(crate) fn validate_strength(path: &KeyPath, guide: &str, strength: f64) -> C
     UNIT.check(path.then("strength"), &format!("the strength of guide `{guide}`"), strength)
 }
 
-/// The fault of naming an end live that lies on the outline.
-pub(crate) fn live_mouth(path: &KeyPath, crack: &str, end: &str, at: Point) -> SceneFault {
+/// The fault of naming an end live that lies `on` the outline or another crack.
+pub(crate) fn no_tip(path: &KeyPath, crack: &str, end: &str, at: Point, on: &str) -> SceneFault {
     SceneFault::new(
         path.then("tips"),
-        format!("the {end} of crack `{crack}` is named live, but it lies on the outline at {} m", show(at)),
-        "name the other end, or leave `tips` out: ends inside the body are then live",
+        format!("the {end} of crack `{crack}` is named live, but it lies on {on} at {} m", show(at)),
+        "name the other end, or leave `tips` out: ends inside the body and on no other crack are then live",
     )
 }
 
@@ -160,8 +172,26 @@ pub(crate) fn leaves(region: &Region, points: &[Point]) -> Option<Point> {
     (!region.contains(middle)).then_some(*first)
 }
 
+/// Where two cracks meet other than in an end of one that is a vertex inside the other.
 pub(super) fn meeting(a: &[Point], b: &[Point]) -> Option<Point> {
     a.windows(2).find_map(|v| {
-        b.windows(2).find(|w| segments_touch(v[0], v[1], w[0], w[1])).map(|w| nearest_on_segment(w[0], w[1], v[1]))
+        let meets = |w: &&[Point]| segments_touch(v[0], v[1], w[0], w[1]) && !joined(a, v, b, w) && !joined(b, w, a, v);
+        b.windows(2).find(meets).map(|w| nearest_on_segment(w[0], w[1], v[1]))
+    })
+}
+
+/// Whether `point` is a vertex of a line other than its ends.
+fn is_inside(line: &[Point], point: Point) -> bool {
+    line.len() > 2 && line[1..line.len() - 1].contains(&point)
+}
+
+/// Whether the piece `v` of `guest` ends the line, on a vertex inside `trunk` that its piece `w` has, and runs off to the side from there.
+fn joined(guest: &[Point], v: &[Point], trunk: &[Point], w: &[Point]) -> bool {
+    let (first, last) = (guest[0], guest[guest.len() - 1]);
+    [(first, v[0], v[1]), (last, v[1], v[0])].into_iter().any(|(end, own, inner)| {
+        own == end && is_inside(trunk, end) && w.contains(&end) && {
+            let other = if w[0] == end { w[1] } else { w[0] };
+            orientation(end, other, inner) != 0.0 || (other - end).dot(&(inner - end)) < 0.0
+        }
     })
 }

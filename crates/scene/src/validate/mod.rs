@@ -9,7 +9,7 @@ mod toughness;
 
 #[cfg(test)]
 pub(crate) use cracks::leaves;
-pub(crate) use cracks::live_mouth;
+pub(crate) use cracks::no_tip;
 pub(crate) use cracks::validate_strength;
 pub(crate) use curve::{Clock, validate_schedule, validate_speed};
 pub(crate) use region::{overlap, validate_region};

@@ -262,6 +262,27 @@ fn a_crack_ends_on_the_one_it_meets() {
     }
 }
 
+/// Truth: counted by hand. A crack drawn to one that parts the plate makes three pieces of it, and opens where it ends.
+#[test]
+fn a_crack_drawn_to_another_ends_on_it() {
+    for (name, x) in [("between", 5.1), ("on a grid line", 5.0), ("through particles", 5.125)] {
+        let mut scene = small_plate();
+        add_crack(&mut scene, &[[0.0, 4.13], [x, 4.13]]);
+        add_crack(&mut scene, &[[x, 0.0], [x, 4.13], [x, 8.0]]);
+        for crack in &mut scene.cracks {
+            (crack.start_live, crack.end_live) = (false, false);
+        }
+        pull(&mut scene, STRESS);
+        for frame in both(name, &scene, 2) {
+            let crack = &frame.cracks[0];
+            assert_eq!((crack.start, crack.end), (CrackEnd::Mouth, CrackEnd::Junction { crack: 1 }), "{name}");
+            assert_eq!(pieces(&frame), 3, "{name}");
+            let apart = crack.above.last().unwrap() - crack.below.last().unwrap();
+            assert!(apart.y > 1e-3, "{name}: {apart}");
+        }
+    }
+}
+
 /// Truth: the drawing. The crack follows its guide to the outline and ends there.
 #[test]
 fn a_guide_ends_exactly_on_the_outline() {

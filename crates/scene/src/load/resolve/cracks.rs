@@ -6,30 +6,40 @@ use super::{Resolved, Resolver};
 use crate::document::{CrackKeys, Tips};
 use crate::fault::{KeyPath, SceneFault, nearest, show};
 use crate::geometry::Point;
-use crate::load::seating::{fit_guide, seat_crack};
+use crate::load::seating::{Seated, fit_guide, seat_crack, seat_on_cracks};
 use crate::scene::*;
-use crate::validate::{Clock, live_mouth, validate_schedule, validate_strength};
+use crate::validate::{Clock, no_tip, validate_schedule, validate_strength};
 
-/// Crack ends this near to the outline, in particle spacings, lie on it: twice what flattening may move the outline by.
+/// Crack ends this near to the outline or to another crack, in particle spacings, lie on it: twice what flattening may move it by.
 const MOUTH_TOLERANCE: f64 = 2.0 * super::FLATTENING;
 /// A guide this near to the tip or crack, in particle spacings, starts there or runs along it.
 const GUIDE_TOLERANCE: f64 = 0.5;
 
 impl<'d> Resolver<'d> {
     pub(super) fn cracks(&self, scene: &mut Scene, tolerance: f64) -> Resolved<()> {
+        let reach = MOUTH_TOLERANCE * scene.particle_spacing;
+        let (mut lines, mut bodies, mut all_seated) = (Vec::new(), Vec::new(), Vec::new());
         for (i, keys) in self.document.crack.iter().enumerate() {
             let path = KeyPath::item("crack", i);
-            let name = keys.name.clone().unwrap_or_else(|| format!("crack-{}", i + 1));
+            let name = name_of(i, keys);
             let line_path = path.then("line");
             let line = self.line(&line_path, &keys.line, tolerance)?;
             let body = self.body_of_crack(&path, keys, &name, &line, scene)?;
-            let reach = MOUTH_TOLERANCE * scene.particle_spacing;
             let body_name = scene.bodies[body].name.clone();
             let seated = seat_crack(&line, &mut scene.bodies[body].region, reach).map_err(|(message, remedy)| {
                 let message = format!("crack `{name}` is not inside body `{body_name}`: {message}");
                 SceneFault::new(line_path.clone(), message, remedy)
             })?;
-            let live = live_ends(&path, keys.tips, &name, &seated.points, seated.mouths)?;
+            lines.push(line);
+            bodies.push(body);
+            all_seated.push(seated);
+        }
+        seat_on_cracks(&mut all_seated, &bodies, reach);
+        for (i, ((keys, line), (body, seated))) in
+            self.document.crack.iter().zip(lines).zip(bodies.into_iter().zip(all_seated)).enumerate()
+        {
+            let (path, name) = (KeyPath::item("crack", i), name_of(i, keys));
+            let live = live_ends(&path, keys.tips, &name, &seated)?;
             let mut crack = Crack {
                 body,
                 start_live: live[0],
@@ -142,18 +152,18 @@ impl<'d> Resolver<'d> {
     }
 }
 
-/// Which ends are live: as named, or every end inside the body.
-pub(super) fn live_ends(
-    path: &KeyPath,
-    tips: Option<Tips>,
-    name: &str,
-    points: &[Point],
-    mouths: [bool; 2],
-) -> Resolved<[bool; 2]> {
-    let live = tips.map_or([!mouths[0], !mouths[1]], Tips::live);
+fn name_of(position: usize, keys: &CrackKeys) -> String {
+    keys.name.clone().unwrap_or_else(|| format!("crack-{}", position + 1))
+}
+
+/// Which ends are live: as named, or every end inside the body and on no other crack.
+fn live_ends(path: &KeyPath, tips: Option<Tips>, name: &str, seated: &Seated) -> Resolved<[bool; 2]> {
+    let Seated { points, mouths, junctions } = seated;
+    let live = tips.map_or([0, 1].map(|end| !mouths[end] && !junctions[end]), Tips::live);
     for (end, word) in ["start", "end"].into_iter().enumerate() {
-        if live[end] && mouths[end] {
-            return Err(live_mouth(path, name, word, points[end * (points.len() - 1)]));
+        if live[end] && (mouths[end] || junctions[end]) {
+            let on = if mouths[end] { "the outline" } else { "another crack" };
+            return Err(no_tip(path, name, word, points[end * (points.len() - 1)], on));
         }
     }
     Ok(live)
