@@ -175,6 +175,29 @@ fn the_log_for_programs_is_one_object_per_line() {
     assert_eq!(value["particles"].as_i64(), Some(400));
 }
 
+/// Truth: the same rows as text and as Markdown, each with its target; what cannot be run is told before anything runs.
+#[test]
+fn verify_prints_what_a_case_found_beside_what_it_should() {
+    let folder = workplace();
+    let list = expect(&run(folder.path(), &["verify", "--list"]), 0);
+    assert!(list.lines().any(|line| line.starts_with("three-holes ")), "{list}");
+    let text = expect(&run(folder.path(), &["verify", "free-flight", "--cells", "5"]), 0);
+    let table = expect(&run(folder.path(), &["verify", "free-flight", "--cells", "5", "--markdown"]), 0);
+    for row in ["change of momentum, relative", "change of energy, relative"] {
+        let of = |output: &str| output.lines().find(|line| line.contains(row)).map(|line| line.contains(": yes"));
+        assert_eq!((of(&text), of(&table)), (Some(true), Some(true)), "{text}{table}");
+    }
+    assert!(text.contains(" particles at most, ") && table.contains("## `free-flight`"), "{text}{table}");
+    for (arguments, words) in [
+        (&["verify"][..], "no case named"),
+        (&["verify", "free-fligth"], "there is no case `free-fligth`"),
+        (&["verify", "free-flight", "--cells", "nan"], "the cells must be 4 to 1024"),
+    ] {
+        let told = expect(&run(folder.path(), arguments), 2);
+        assert!(told.contains(words), "{told}");
+    }
+}
+
 #[test]
 fn quiet_says_nothing_when_all_is_well() {
     let folder = workplace();
