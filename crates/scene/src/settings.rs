@@ -136,8 +136,8 @@ pub struct SolverSettings {
     pub tip_division: TipDivision,
     /// How J is measured.
     pub j_method: JMethod,
-    /// Radius of contour or domain, in cells.
-    pub j_radius: f64,
+    /// Radius of contour or domain, in cells; none: as there is room.
+    pub j_radius: Option<f64>,
     /// Whether the dynamic area term is added to J.
     pub area_term: bool,
     /// How J is split.

@@ -14,6 +14,13 @@ use std::convert::Infallible;
 
 /// The radius is not made smaller than this, in cells: within it lie too few particles for an integral.
 const SMALLEST_RADIUS: f64 = 2.0;
+/// A domain without a radius of its own reaches over this part of the way to what would spoil it ...
+const PART_OF_ROOM: f64 = 0.375;
+/// ... but over so many cells at least, ...
+const NARROW_RADIUS: f64 = 4.0;
+/// ... and at most: its error falls with their number. K_I of edge cracks of 16 and 32 cells is off by 0.16 and 0.16 % (rms) with four cells, by 0.07 and
+/// 0.05 % with six.
+const WIDE_RADIUS: f64 = 6.0;
 /// q is 1 within this radius, in cells.
 const INNER_RADIUS: f64 = 1.0;
 /// A turn of the crack by more than this counts as a kink [rad]: over it the energy of a field along the crack is no longer that of one direction. Growth in
@@ -32,10 +39,13 @@ impl Gauge<'_> {
     pub(crate) fn measure(&self, solver: &dyn Observed, cracks: &[Crack], crack: usize, end: End) -> Measured {
         let settings = &self.scene.solver;
         let h = self.scene.cell_size;
-        let wanted = settings.j_radius * h;
-        let radius = match settings.j_method {
-            JMethod::Domain => wanted.min(self.free_radius(cracks, crack, end)).max(SMALLEST_RADIUS * h),
-            JMethod::Contour => wanted,
+        let (radius, radius_shrunk) = match settings.j_method {
+            JMethod::Domain => {
+                let room = self.free_radius(cracks, crack, end) / h;
+                let wanted = settings.j_radius.unwrap_or((PART_OF_ROOM * room).clamp(NARROW_RADIUS, WIDE_RADIUS));
+                (wanted.min(room).max(SMALLEST_RADIUS) * h, wanted > room)
+            }
+            JMethod::Contour => (settings.j_radius.unwrap_or(NARROW_RADIUS) * h, false),
         };
         // The contour takes kernel averages around its points.
         let reach = if settings.j_method == JMethod::Contour { radius + 2.0 * h } else { radius };
@@ -80,7 +90,7 @@ impl Gauge<'_> {
             released: decisive.energy_release_rate(elastic.effective_modulus),
             fracture_toughness: 0.0,
             contour_radius: radius,
-            radius_shrunk: radius < wanted,
+            radius_shrunk,
         };
         measured.fracture_toughness = growth::toughness_ahead(&cracks[crack], end, &measured, self.scene);
         measured

@@ -49,7 +49,7 @@ pub(crate) fn free_body(region: Region, spacing: f64) -> Scene {
             crack_friction: 0.0,
             tip_division: TipDivision::LineCrossing,
             j_method: JMethod::Domain,
-            j_radius: 4.0,
+            j_radius: None,
             area_term: true,
             mode_split: ModeSplit::Interaction,
         },

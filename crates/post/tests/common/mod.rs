@@ -51,7 +51,7 @@ pub fn scene(region: Region) -> Scene {
             crack_friction: 0.0,
             tip_division: TipDivision::PartlyCut,
             j_method: JMethod::Domain,
-            j_radius: 4.0,
+            j_radius: None,
             area_term: true,
             mode_split: ModeSplit::Interaction,
         },

@@ -46,7 +46,7 @@ pub struct SolverKeys {
     pub tip_division: Option<TipDivision>,
     /// How the energy release rate is measured: `contour` or `domain`.
     pub j_method: Option<JMethod>,
-    /// Radius of the contour or domain, in cells.
+    /// Radius of the contour or domain, in cells. Default: four cells, or 3/8 of the way to the nearest edge, kink or other crack, but at most six.
     pub j_radius: Option<f64>,
     /// Whether the dynamic area term is added to the energy release rate.
     pub area_term: Option<bool>,

@@ -60,7 +60,9 @@ impl Scene {
         FRACTION.check(solver("courant"), "`courant`", s.courant)?;
         NOT_NEGATIVE.check(solver("damping"), "`damping`", s.damping)?;
         FRICTION.check(solver("crack_friction"), "`crack_friction`", s.crack_friction)?;
-        POSITIVE.check(solver("j_radius"), "`j_radius`", s.j_radius)?;
+        if let Some(radius) = s.j_radius {
+            POSITIVE.check(solver("j_radius"), "`j_radius`", radius)?;
+        }
         if let crate::settings::Transfer::Flip(flip) = s.transfer {
             UNIT.check(solver("transfer"), "the FLIP share", flip)?;
         }

@@ -65,7 +65,8 @@ pub(crate) fn toughness_ahead(crack: &Crack, end: End, measured: &Measured, scen
 
 /// K_eq [Pa·√m] for the direction the tip would take: what was measured for the physical direction, times how much less that one gets of it.
 fn equivalent(crack: &Crack, end: End, measured: &Measured, scene: &Scene) -> f64 {
-    let has_guide = crack.tips[slot(end)].as_ref().is_some_and(|t| t.guide.is_some());
+    let guide = crack.tips[slot(end)].as_ref().and_then(|t| t.guide.as_ref());
+    let has_guide = guide.is_some_and(|g| g.strength() > 0.0);
     if !has_guide && !seeking::is_varied(crack, scene) {
         return measured.equivalent;
     }

@@ -27,7 +27,7 @@ fn ratio(method: JMethod, area_term: bool, part: f64) -> f64 {
     scene.frames.rate = 1.0 / (arrival + since);
     scene.solver.j_method = method;
     scene.solver.area_term = area_term;
-    scene.solver.j_radius = part * c * since / scene.cell_size;
+    scene.solver.j_radius = Some(part * c * since / scene.cell_size);
     let mut simulation = Simulation::new(&scene).unwrap();
     let frame = run(&mut simulation, 1).unwrap();
     let tip = &frame.tips[0];

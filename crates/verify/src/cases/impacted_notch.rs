@@ -4,13 +4,14 @@
 //! within 1 µs. E = 190 GPa, ν = 0.3, ρ = 8000 kg/m³, K_Ic = 68 MPa√m, plane strain. The driven nodes end one cell below the notch.
 //!
 //! Reference for a sharp notch with frictionless faces: K_I = 0, so that the maximum hoop stress turns the crack by 70.53° and it starts when |K_II| is
-//! (√3/2) K_Ic, at 13.1 µs by an own finite element solution of the resting notch without contact; experiments (notches 0.3 mm wide) and phase field or extended finite element
+//! (√3/2) K_Ic, at 13.1 µs by an own finite element solution of the resting notch if contact leaves its K_II as it is; experiments (notches 0.3 mm wide) and phase field or extended finite element
 //! computations give mean angles of 60 to 72° and start later. Cells are counted over the strip below the notch.
 
 use crate::case::{Case, Options};
+use crate::interpolate::linear;
 use crate::problem::{Problem, material, rectangle};
 use crate::report::{Expected, Tally};
-use fissure_scene::{BoxSide, Curve, PlaneState, Selection, Support};
+use fissure_scene::{BoxSide, Curve, PlaneState, Point, Selection, Support};
 use fissure_sim::{Simulation, SimulationError};
 use std::ops::ControlFlow;
 
@@ -24,31 +25,60 @@ pub(crate) const CASE: Case = Case::new(
 /// Height of the driven strip [m].
 const STRIP: f64 = 0.025;
 const TOUGHNESS: f64 = 68e6;
+/// Time [µs], K_I and K_II [MPa√m] of an own finite element solution of the resting notch, in which its faces go through each other.
+const AT_REST: [(f64, f64, f64); 3] = [(12.0, -24.92, -49.09), (13.2, -29.49, -59.75), (14.4, -28.19, -64.39)];
 /// Length of the path that is judged [m].
 const RUN: f64 = 0.025;
 
-fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationError> {
-    let cell_size = STRIP / options.cells_or(CASE.cells.1).round();
-    // Where the tip and the notch lie within a cell.
+/// The half plate and the tip of its notch [m], which lies off the lattice by parts of a cell.
+fn plate(cell_size: f64, toughness: f64) -> (Problem, Point) {
     let [along, across] = [0.125, 0.51];
-    let (x, y) = (0.05 + along * cell_size, STRIP + (across - 0.5) * cell_size);
+    let tip = Point::new(0.05 + along * cell_size, STRIP + (across - 0.5) * cell_size);
     let driven = Selection::Region(rectangle((-0.25 * cell_size, 0.0), (0.25 * cell_size, STRIP - cell_size)));
     let mut problem = Problem::new(
         "impacted-notch",
         rectangle((0.0, 0.0), (0.1, 0.1)),
-        material(190e9, 0.3, 8000.0, TOUGHNESS),
+        material(190e9, 0.3, 8000.0, toughness),
         PlaneState::Strain,
         cell_size,
     )
-    .crack(&[(0.0, y), (x, y)], [false, true])
-    .support(Selection::Edge { side: BoxSide::Bottom, body: None }, [None, Some(0.0)])
-    .growing()
-    .until(80e-6, 80);
+    .crack(&[(0.0, tip.y), (tip.x, tip.y)], [false, true])
+    .support(Selection::Edge { side: BoxSide::Bottom, body: None }, [None, Some(0.0)]);
     problem.scene.supports.push(Support {
         selection: driven,
         velocity: [Some(16.5), None],
         curve: Curve { points: vec![(0.0, 0.0), (1e-6, 1.0)] },
     });
+    (problem, tip)
+}
+
+/// K of the resting notch whose faces go through each other, beside finite elements that let them.
+fn compare_at_rest(cell_size: f64, tally: &mut Tally<'_>) -> Result<(), SimulationError> {
+    let (problem, _) = plate(cell_size, 1e30);
+    let mut problem = problem.until(15e-6, 15);
+    problem.scene.solver.crack_contact = false;
+    let mut simulation = Simulation::new(&problem.scene)?;
+    let mut curves = [Vec::new(), Vec::new()];
+    tally.run(&mut simulation, |now, time| {
+        let tip = &now.tips()[0];
+        curves[0].push((1e6 * time, 1e-6 * tip.mode_1));
+        curves[1].push((1e6 * time, 1e-6 * tip.mode_2));
+        ControlFlow::Continue(())
+    })?;
+    for (time, mode_1, mode_2) in AT_REST {
+        let of = format!("at {time} µs without contact");
+        tally.absolute(format!("K_I {of}"), "MPa√m", linear(&curves[0], time), mode_1, None);
+        tally.absolute(format!("K_II {of}"), "MPa√m", linear(&curves[1], time), mode_2, None);
+    }
+    Ok(())
+}
+
+fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationError> {
+    let cell_size = STRIP / options.cells_or(CASE.cells.1).round();
+    compare_at_rest(cell_size, tally)?;
+    let (problem, tip) = plate(cell_size, TOUGHNESS);
+    let (x, y) = (tip.x, tip.y);
+    let problem = problem.growing().until(80e-6, 80);
     let mut simulation = Simulation::new(&problem.scene)?;
     let (mut start, mut opening, mut shear, mut path) = (f64::NAN, 0.0_f64, 0.0, Vec::new());
     let notch = x;
@@ -85,6 +115,10 @@ fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationErr
         }
         (last.y - y).atan2(last.x - x).to_degrees()
     });
+    tally.note(
+        "Faces that press on each other hand on a part of the impact: K_II is about 1 % more than without contact, and the start 0.15 µs before the 13.1 µs that \
+         finite elements without contact suggest. With half the cell size it is 12.913 µs.",
+    );
     tally.bound("start", "µs", 1e6 * start, Expected::Between(13.0, 17.0));
     tally.bound("mean angle of the path", "°", angle, Expected::Between(60.0, 72.0));
     tally.absolute("angle of the first three cells", "°", first, 70.53, None);

@@ -39,7 +39,7 @@ impl<'d> Resolver<'d> {
         s.crack_friction = keys.crack_friction.unwrap_or(s.crack_friction);
         s.tip_division = keys.tip_division.unwrap_or(s.tip_division);
         s.j_method = keys.j_method.unwrap_or(s.j_method);
-        s.j_radius = keys.j_radius.unwrap_or(s.j_radius);
+        s.j_radius = keys.j_radius.or(s.j_radius);
         s.area_term = keys.area_term.unwrap_or(s.area_term);
         s.mode_split = keys.mode_split.unwrap_or(s.mode_split);
         s
