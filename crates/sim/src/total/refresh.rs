@@ -33,6 +33,11 @@ impl Near {
         self.boxes.iter().any(|(low, high)| place >= *low && place <= *high)
     }
 
+    /// Whether something has changed within `reach` [m] of a place at rest, as boxes go.
+    pub(super) fn is_within(&self, place: Point, reach: f64) -> bool {
+        self.widened(reach).any(|(low, high)| place >= low && place <= high)
+    }
+
     /// The number that a segment of a crack has now.
     pub(super) fn segment_now(&self, crack: u32, before: u32) -> u32 {
         before + self.shifts[crack as usize]

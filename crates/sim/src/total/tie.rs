@@ -217,9 +217,10 @@ impl Total {
         self.lay_ties_where(cracks, |_| true);
     }
 
-    /// Lays the ties anew of tips that lie where something has changed.
+    /// Lays the ties anew of tips whose ties reach to where something has changed: a field that has lost its mass, to another crack maybe, cannot be tied.
     pub(super) fn lay_ties_near(&mut self, near: &Near, cracks: &[Crack]) {
-        self.lay_ties_where(cracks, |tip| near.contains(tip));
+        let reach = (WINDOW.hypot(WINDOW) + 1.0) * self.grid.cell_size;
+        self.lay_ties_where(cracks, |tip| near.is_within(tip, reach));
     }
 
     fn lay_ties_where(&mut self, cracks: &[Crack], is_changed: impl Fn(Point) -> bool) {
