@@ -17,7 +17,7 @@ mod tie;
 
 use crate::SimulationError;
 use crate::collider::Obstacle;
-use crate::crack::Crack;
+use crate::crack::{Crack, slot};
 use crate::crossing::Side;
 use crate::division::{CrackLine, Division, TipCut};
 use crate::elastic::Elastic;
@@ -30,11 +30,13 @@ use boundary::{Constraint, PointForce};
 use contact::ContactPair;
 use cut::{CutParticles, Probe};
 use fissure_scene::{
-    CrackFrame, End, Kernel, Matrix, OutlineFrame, ParticleFrame, Point, Scene, SolverSettings, TipDivision, Vector,
+    CrackEnd, CrackFrame, End, Kernel, Matrix, OutlineFrame, ParticleFrame, Point, Scene, SolverSettings, TipDivision,
+    Vector,
 };
 use rows::{NodeRows, RowConstants, Run};
 use serde::{Deserialize, Serialize};
-use tie::Ties;
+use std::collections::BTreeMap;
+use tie::{Ties, TipKey, key};
 
 /// A vector at every field, x and y apart.
 type FieldVectors = [Vec<f64>; 2];
@@ -62,6 +64,9 @@ struct State {
     external_work: f64,
     /// What holds the sides of nodes at tips together.
     ties: Ties,
+    /// Where each tip was when nodes were last split for it. It has slid on since, within its increment; what is cut anew for other cracks is cut for it as it
+    /// was, or nodes at the edge of what is cut anew would be split by halves.
+    cut_at: BTreeMap<TipKey, Point>,
     /// Velocities and displacements belong to the same moment: the next kick takes half a step, after which velocities are half a step ahead. A
     /// whole kick here would more than double the amplitude of the shortest waves.
     in_step: bool,
@@ -150,6 +155,7 @@ impl Total {
             faces: Vec::new(),
             external_work: 0.0,
             ties: Ties::default(),
+            cut_at: BTreeMap::new(),
             in_step: true,
             last_step: 0.0,
         };
@@ -159,7 +165,7 @@ impl Total {
             elastic,
             lattice,
             grid,
-            division: Self::division_of(scene, cracks),
+            division: Self::division_of(scene, cracks, &BTreeMap::new()),
             colliders: scene.colliders.iter().map(Obstacle::new).collect(),
             state,
             inverse_mass: Vec::new(),
@@ -192,16 +198,26 @@ impl Total {
     ) -> Result<Self, SimulationError> {
         let mut solver = Self::new(scene, particles, cracks)?;
         solver.state = crate::saved::from_bytes(state)?;
+        solver.division = Self::division_of(scene, cracks, &solver.state.cut_at);
         solver.refresh(cracks)?;
         Ok(solver)
     }
 
-    fn division_of(scene: &Scene, cracks: &[Crack]) -> Division {
+    fn division_of(scene: &Scene, cracks: &[Crack], cut_at: &BTreeMap<TipKey, Point>) -> Division {
         // A line from a particle inside the body to a node outside may pass a mouth by as much as the kernel reaches.
         let reach = 0.5 * kernel::width(scene.solver.kernel) as f64;
         let beyond = 2.0 * reach * scene.cell_size;
-        let lines: Vec<CrackLine> =
-            cracks.iter().enumerate().map(|(i, c)| c.line(i, c.points.clone(), beyond)).collect();
+        let points = |i: usize, c: &Crack| {
+            let mut points = c.points.clone();
+            let last = points.len() - 1;
+            for (end, at) in [(End::Start, 0), (End::End, last)] {
+                if let (CrackEnd::Tip, Some(&place)) = (c.ends[slot(end)], cut_at.get(&key(i, end))) {
+                    points[at] = place;
+                }
+            }
+            points
+        };
+        let lines: Vec<CrackLine> = cracks.iter().enumerate().map(|(i, c)| c.line(i, points(i, c), beyond)).collect();
         let cut = TipCut::tied(tie::split_ahead(scene.growth.increment));
         Division::new(&lines, scene.solver.tip_division, cut, scene.cell_size, scene.particle_spacing, reach)
     }

@@ -7,6 +7,7 @@
 use super::Total;
 use super::cut::Entry;
 use super::refresh::Near;
+use super::tie::key;
 use crate::crack::{Crack, slot};
 use crate::crossing::Side;
 use fissure_scene::{CrackEnd, End, Matrix, Point, Vector, bounds};
@@ -51,7 +52,10 @@ impl Total {
 
     /// Takes up new crack points and new kinds of ends.
     pub(super) fn take_up(&mut self, cracks: &[Crack], changed: &[(usize, End)]) {
-        self.division = Self::division_of(&self.scene, cracks);
+        for &(crack, end) in changed {
+            self.state.cut_at.insert(key(crack, end), cracks[crack].tip_position(end));
+        }
+        self.division = Self::division_of(&self.scene, cracks, &self.state.cut_at);
         let points_before: Vec<usize> = self.state.faces.iter().map(|faces| faces[0].len()).collect();
         let boxes: Vec<(Point, Point)> =
             changed.iter().map(|&(crack, end)| self.changed_box(&cracks[crack], end)).collect();
@@ -72,7 +76,7 @@ impl Total {
         (low - reach, high + reach)
     }
 
-    fn recut_particles(&mut self, boxes: &[(Point, Point)]) {
+    pub(super) fn recut_particles(&mut self, boxes: &[(Point, Point)]) {
         let mut affected: Vec<usize> = Vec::new();
         for &(low, high) in boxes {
             self.for_each_particle_in(low, high, |p| {

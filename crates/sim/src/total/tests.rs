@@ -160,3 +160,23 @@ fn a_sliding_tip_takes_what_was_said() {
     let taken = before - total.strain_energy();
     assert!(taken > 0.0 && (taken / said - 1.0).abs() < 1e-9, "{said} {taken}");
 }
+
+/// Truth: nothing has been cut. What is cut anew around a tip that is on its way through an increment, as for another crack beside it, stays as it is,
+/// wherever in a cell the tip is.
+#[test]
+fn a_tip_on_its_way_is_cut_as_it_was() {
+    let (mut total, mut cracks) = opened();
+    let increment = Vector::new(total.scene.growth.increment * total.grid.cell_size, 0.0);
+    for _ in 0..8 {
+        let from = cracks[0].tip_position(End::End);
+        cracks[0].push(End::End, from + increment * 1e-3);
+        total.recut(&cracks, &[(0, End::End)]);
+        cracks[0].move_end(End::End, from + increment);
+        total.slide(&cracks, 0, End::End);
+        let (fields, mass) = (total.state.fields.len(), total.state.mass.clone());
+        total.division = Total::division_of(&total.scene, &cracks, &total.state.cut_at);
+        total.recut_particles(&[(from - Vector::repeat(1.0), from + Vector::repeat(0.1))]);
+        assert_eq!(total.state.fields.len(), fields);
+        assert_eq!(total.state.mass, mass);
+    }
+}

@@ -30,7 +30,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A crack and the position of one of its ends in [start, end].
-type TipKey = (u32, u8);
+pub(super) type TipKey = (u32, u8);
 
 /// A spring between two fields of one node.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -154,7 +154,7 @@ impl Tie {
     }
 }
 
-fn key(crack: usize, end: End) -> TipKey {
+pub(super) fn key(crack: usize, end: End) -> TipKey {
     (crack as u32, slot(end) as u8)
 }
 
