@@ -29,7 +29,7 @@ impl Picture {
                 LoadError::file(path, most, "scale it down: pixels finer than particles are averaged")
             })?;
         // The weights of Rec. 709, in integers so that grey keeps its value exactly.
-        let light = |&[r, g, b, opacity]: &[u16; 4]| {
+        let light = |&[r, g, b, opacity]: &Pixel| {
             let full = f64::from(u16::MAX);
             let luminance = 2126 * u64::from(r) + 7152 * u64::from(g) + 722 * u64::from(b);
             let (luminance, opacity) = (luminance as f64 / (10_000.0 * full), f64::from(opacity) / full);
@@ -52,8 +52,11 @@ impl Picture {
 /// Most bytes that the pixels of a picture may take.
 const MOST_BYTES: usize = 1 << 30;
 
-/// Columns and pixels of a PNG as red, green, blue and opacity, row by row from the highest; none when it is too large.
-fn decode(bytes: &[u8]) -> Result<Option<(usize, Vec<[u16; 4]>)>, png::DecodingError> {
+/// Red, green, blue and opacity, 16 bits each.
+type Pixel = [u16; 4];
+
+/// Columns and pixels of a PNG, row by row from the highest; none when it is too large.
+fn decode(bytes: &[u8]) -> Result<Option<(usize, Vec<Pixel>)>, png::DecodingError> {
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
     decoder.set_transformations(Transformations::ALPHA);
     let mut reader = decoder.read_info()?;
@@ -65,7 +68,7 @@ fn decode(bytes: &[u8]) -> Result<Option<(usize, Vec<[u16; 4]>)>, png::DecodingE
         // 255 is as white as 65535.
         _ => samples.iter().map(|&sample| u16::from(sample) * 257).collect(),
     };
-    let pixels: Vec<[u16; 4]> = match frame.color_type.samples() {
+    let pixels: Vec<Pixel> = match frame.color_type.samples() {
         2 => samples.chunks_exact(2).map(|p| [p[0], p[0], p[0], p[1]]).collect(),
         _ => samples.chunks_exact(4).map(|p| [p[0], p[1], p[2], p[3]]).collect(),
     };
