@@ -18,7 +18,7 @@ const SMALLEST_RADIUS: f64 = 2.0;
 const PART_OF_ROOM: f64 = 0.375;
 /// ... but over so many cells at least, ...
 const NARROW_RADIUS: f64 = 4.0;
-/// ... and at most: its error falls with their number. K_I of edge cracks of 16 and 32 cells is off by 0.16 and 0.16 % (rms) with four cells, by 0.07 and
+/// ... and at most: its error falls with their number. K_I of edge cracks of 16 and 32 cells is off by 0.16 and 0.16 % (rms) with four cells, by 0.08 and
 /// 0.05 % with six.
 const WIDE_RADIUS: f64 = 6.0;
 /// q is 1 within this radius, in cells.
