@@ -226,9 +226,9 @@ fn signal_when(child: &std::process::Child, sign: &Path, signal: &str) {
     assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
 }
 
-/// A run long enough to be interrupted, into the folder `output`.
+/// A run long enough to be interrupted, into the folder `output`: a third of a second on a fast machine, while a signal takes some milliseconds to arrive.
 fn long(output: &str) -> [&str; 6] {
-    ["run", "plate.toml", "--set", "grid.particle_spacing=0.4", "--output", output]
+    ["run", "plate.toml", "--set", "grid.particle_spacing=0.15", "--output", output]
 }
 
 #[cfg(unix)]
@@ -237,15 +237,20 @@ fn an_interrupted_run_resumes_to_the_same_bytes() {
     let folder = workplace();
     expect(&run(folder.path(), &long("whole")), 0);
     let mut interrupts = 0;
-    for frame in [3, 6, 9] {
+    let frame = |number: usize| folder.path().join(format!("parts/plate.take/frame.{number:04}.safetensors"));
+    for _ in 0..3 {
+        // A frame of this run, not of the one before: until it is there the program may not be listening yet.
+        let Some(next) = (1..=12).find(|&number| !frame(number).exists()) else { break };
         let child =
             fissure(folder.path(), &long("parts")).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        signal_when(&child, &folder.path().join(format!("parts/plate.take/frame.{frame:04}.safetensors")), "-INT");
+        signal_when(&child, &frame(next), "-INT");
         let output = child.wait_with_output().unwrap();
         if output.status.code() == Some(75) {
             interrupts += 1;
             let text = expect(&output, 75);
-            assert!(text.contains("fissure run plate.toml --set grid.particle_spacing=0.4 --output parts"), "{text}");
+            assert!(text.contains("fissure run plate.toml --set grid.particle_spacing=0.15 --output parts"), "{text}");
+        } else {
+            expect(&output, 0);
         }
         // The take is readable and every mesh is complete, as another run of the program shows.
         expect(&run(folder.path(), &["post", "parts/plate.take", "--output", "again"]), 0);
@@ -257,8 +262,10 @@ fn an_interrupted_run_resumes_to_the_same_bytes() {
         }
     }
     assert!(interrupts > 0, "the scene is too short to be interrupted");
+    // A busy machine may bring a signal so late that the take has come to its end.
+    let told = if frame(12).exists() { "holds all frames" } else { "resuming `parts/plate.take` after frame" };
     let text = expect(&run(folder.path(), &long("parts")), 0);
-    assert!(text.contains("resuming `parts/plate.take` after frame"), "{text}");
+    assert!(text.contains(told), "{text}");
     assert_same_files(&folder.path().join("whole"), &folder.path().join("parts"));
 }
 
@@ -268,7 +275,7 @@ fn a_killed_run_resumes_to_the_same_bytes() {
     let folder = workplace();
     expect(&run(folder.path(), &long("whole")), 0);
     let mut child = fissure(folder.path(), &long("parts")).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-    signal_when(&child, &folder.path().join("parts/plate.take/frame.0005.safetensors"), "-KILL");
+    signal_when(&child, &folder.path().join("parts/plate.take/frame.0002.safetensors"), "-KILL");
     assert_eq!(child.wait().unwrap().code(), None, "the scene is too short to be killed");
     expect(&run(folder.path(), &long("parts")), 0);
     let leftovers = |name: &String| name.ends_with(".part");
