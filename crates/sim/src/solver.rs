@@ -12,6 +12,8 @@ use fissure_scene::{CrackFrame, End, Matrix, OutlineFrame, ParticleFrame, Point,
 pub(crate) struct TipZone {
     /// Quadrature points.
     pub(crate) points: Vec<QuadraturePoint>,
+    /// What the faces behind the tip do to each other.
+    pub(crate) contacts: Vec<FaceContact>,
     /// Opening (x_left − x_right) in the tip frame, taken behind the tip: (sliding, opening) [m]. Left is the +e2 side.
     pub(crate) opening: Vector,
     /// Distance behind the tip at which the opening was taken [m].
@@ -49,6 +51,15 @@ impl TipZone {
             self.points.iter_mut().for_each(|p| p.place.y -= middle);
         }
     }
+}
+
+/// What the faces of a crack do to each other around one place behind a tip.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FaceContact {
+    /// Distance behind the tip [m]; below zero ahead of it.
+    pub(crate) behind: f64,
+    /// Force per unit thickness on the face on the +e2 side, in the tip frame [N/m]. The other one feels the opposite.
+    pub(crate) force: Vector,
 }
 
 /// One particle near a tip. Vectors and tensors in the tip frame.

@@ -1,15 +1,17 @@
 //! Contact between the two faces of a crack, at nodes that have fields on both sides of it.
 //!
-//! Nairn 2003, Guo & Nairn 2006 (thesis eq. 7–10): only if the fields approach, (v_a − v_b)·n < 0, *and* overlap, (u_a − u_b)·n < 0, with n from
-//! below to above; then both get the normal velocity of their centre of mass. Friction after Coulomb: the tangential impulse is
-//! at most μ times the normal one; an infinite μ sticks.
+//! Nairn 2003, Guo & Nairn 2006 (thesis eq. 7–10): fields that overlap, (u_a − u_b)·n < 0 with n from below to above, and approach, (v_a − v_b)·n < 0, get
+//! the normal velocity of their centre of mass. Friction after Coulomb: the tangential impulse is at most μ times the normal one; an infinite μ sticks.
+//!
+//! Taken word for word, faces that meet sink into each other by what they go in one step, and stay there; faces that rub do so again and again, and hand on
+//! less and less of the pressure near a tip. Here fields may approach by what is left of their gap in the step, so that they meet and never overlap.
 
 use super::Total;
 use super::refresh::Near;
 use crate::crack::Crack;
 use crate::crossing::Side;
 use crate::division::{CrossedSet, facing};
-use fissure_scene::Vector;
+use fissure_scene::{Point, Vector};
 
 /// Two fields of one node on the two sides of one crack.
 #[derive(Debug, Clone, Copy)]
@@ -19,10 +21,9 @@ pub(super) struct ContactPair {
     crack: u32,
     /// Segment of the crack nearest to the node.
     segment: u32,
+    /// Force on the field above in the last step, per unit thickness [N/m].
+    force: [f64; 2],
 }
-
-/// Faces that overlap by less than this part of their displacement touch by round-off only: where a crack has just come, its faces still lie on each other.
-pub(super) const ROUND_OFF: f64 = 1e-12;
 
 impl Total {
     /// All pairs of fields that face each other across one crack.
@@ -79,7 +80,7 @@ impl Total {
                         (nearest, segment) = (distance, s);
                     }
                 }
-                pairs.push(ContactPair { above, below, crack, segment: segment as u32 });
+                pairs.push(ContactPair { above, below, crack, segment: segment as u32, force: [0.0; 2] });
             }
         }
     }
@@ -96,11 +97,16 @@ impl Total {
         (length > 0.0).then(|| Vector::new(-tangent.y, tangent.x) / length)
     }
 
-    /// Applies contact to all pairs.
-    pub(super) fn resolve_crack_contact(&mut self) {
-        let pairs = std::mem::take(&mut self.contacts);
+    /// Forgets the forces of the step before.
+    pub(super) fn release_crack_contact(&mut self) {
+        self.contacts.iter_mut().for_each(|pair| pair.force = [0.0; 2]);
+    }
+
+    /// Applies contact to all pairs: impulses within the time `kick` [s].
+    pub(super) fn resolve_crack_contact(&mut self, kick: f64, time_step: f64) {
+        let mut pairs = std::mem::take(&mut self.contacts);
         let friction = self.settings.crack_friction;
-        for pair in &pairs {
+        for pair in &mut pairs {
             let (a, b) = (pair.above as usize, pair.below as usize);
             let (u, v) = (&self.state.displacement, &self.state.velocity);
             let gap = Vector::new(u[0][a] - u[0][b], u[1][a] - u[1][b]);
@@ -110,24 +116,32 @@ impl Total {
             }
             let Some(n) = self.segment_normal(pair.crack, pair.segment) else { continue };
             let approach = speed.dot(&n);
-            let touching = ROUND_OFF * (u[0][a].abs() + u[1][a].abs() + u[0][b].abs() + u[1][b].abs());
-            if approach >= 0.0 || gap.dot(&n) >= -touching {
+            // What is left of the gap may be used up in this step; faces that overlap stay as they are.
+            let allowed = -gap.dot(&n).max(0.0) / time_step;
+            if approach >= allowed {
                 continue;
             }
             let (mass_a, mass_b) = (self.state.mass[a], self.state.mass[b]);
             let reduced = mass_a * mass_b / (mass_a + mass_b);
             let sliding = speed - n * approach;
             let sliding_speed = sliding.norm();
-            let mut impulse = n * (-approach * reduced);
+            let mut impulse = n * ((allowed - approach) * reduced);
             if friction > 0.0 && sliding_speed > 0.0 {
-                let most = friction * -approach;
+                let most = friction * (allowed - approach);
                 impulse -= sliding * (reduced * (most / sliding_speed).min(1.0));
             }
             for axis in 0..2 {
+                pair.force[axis] += impulse[axis] / kick;
                 self.state.velocity[axis][a] += impulse[axis] / mass_a;
                 self.state.velocity[axis][b] -= impulse[axis] / mass_b;
             }
         }
         self.contacts = pairs;
+    }
+
+    /// The forces of the last step between the faces of a crack: place at rest [m] and force on the face above [N/m].
+    pub(super) fn face_forces(&self, crack: usize) -> impl Iterator<Item = (Point, Vector)> {
+        let pressed = self.contacts.iter().filter(move |p| p.crack as usize == crack && p.force != [0.0; 2]);
+        pressed.map(|p| (self.grid.position(self.state.fields.node(p.above as usize)), Vector::from(p.force)))
     }
 }

@@ -5,7 +5,7 @@ use super::{FieldVectors, Total, left_of_tip};
 use crate::SimulationError;
 use crate::crack::{Crack, DIRECTION_LENGTH};
 use crate::look::{crack_frame, side_of, tip_of, turn};
-use crate::solver::{Observed, QuadraturePoint, TipZone};
+use crate::solver::{FaceContact, Observed, QuadraturePoint, TipZone};
 use fissure_scene::{CrackFrame, End, Matrix, OutlineFrame, ParticleFrame, Point, Vector};
 
 /// A moment in the middle of a step: displacements and accelerations of the step's beginning, velocities half a step later.
@@ -108,7 +108,14 @@ impl Total {
             });
         }
         let (opening, opening_distance) = self.opening(line, crack, end, frame * back);
-        TipZone { points, opening, opening_distance }
+        let into = frame * back;
+        let sign = left_of_tip(end).sign();
+        let contacts = self
+            .face_forces(crack)
+            .map(|(place, force)| FaceContact { behind: (tip - place).dot(&ahead), force: into * force * sign })
+            .filter(|c| c.behind < radius + self.grid.cell_size)
+            .collect();
+        TipZone { points, contacts, opening, opening_distance }
     }
 
     /// Opening of the faces some way behind a tip, in the tip frame, and that distance.

@@ -415,11 +415,12 @@ impl Solver for Total {
         }
         self.apply_drag(cracks, kick);
         if self.settings.crack_contact && !self.contacts.is_empty() {
-            self.resolve_crack_contact();
+            self.release_crack_contact();
+            self.resolve_crack_contact(kick, time_step);
         }
         self.apply_constraints_and_colliders(time, time_step);
         if self.settings.crack_contact && !self.contacts.is_empty() && !self.colliders.is_empty() {
-            self.resolve_crack_contact();
+            self.resolve_crack_contact(kick, time_step);
         }
         for axis in 0..2 {
             let (velocity, acceleration) = (&self.state.velocity[axis], &mut self.acceleration[axis]);

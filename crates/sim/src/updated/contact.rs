@@ -13,7 +13,7 @@ use super::Updated;
 use crate::crossing::Side;
 use crate::division::facing;
 use crate::kernel;
-use fissure_scene::{Matrix, Vector};
+use fissure_scene::{Matrix, Point, Vector};
 
 /// Faces that overlap by less than this part of a cell touch by round-off only.
 const ROUND_OFF: f64 = 1e-9;
@@ -23,6 +23,9 @@ const ROUND_OFF: f64 = 1e-9;
 pub(super) struct ContactPair {
     above: u32,
     below: u32,
+    crack: u32,
+    /// Force on the field above in this step, per unit thickness [N/m].
+    force: [f64; 2],
     /// Current unit normal, from below to above.
     normal: Vector,
 }
@@ -72,7 +75,13 @@ impl Updated {
                     let overlap = -jump.dot(&at_rest);
                     if overlap > ROUND_OFF * self.scene.cell_size * at_rest.norm() && now != Vector::zeros() {
                         let normal = now.normalize();
-                        pairs.push(ContactPair { above: above as u32, below: below as u32, normal });
+                        pairs.push(ContactPair {
+                            above: above as u32,
+                            below: below as u32,
+                            crack,
+                            force: [0.0; 2],
+                            normal,
+                        });
                     }
                 }
             }
@@ -123,10 +132,11 @@ impl Updated {
         places
     }
 
-    /// Applies contact to the overlapping pairs, at nodes where they approach.
-    pub(super) fn resolve_crack_contact(&mut self, pairs: &[ContactPair]) {
+    /// Applies contact to the overlapping pairs, at nodes where they approach: impulses within a step [s].
+    pub(super) fn resolve_crack_contact(&mut self, time_step: f64) {
+        let mut pairs = std::mem::take(&mut self.contacts);
         let friction = self.settings.crack_friction;
-        for pair in pairs {
+        for pair in &mut pairs {
             let (a, b) = (pair.above as usize, pair.below as usize);
             let speed = self.nodes.velocity(a) - self.nodes.velocity(b);
             let approach = speed.dot(&pair.normal);
@@ -142,9 +152,18 @@ impl Updated {
                 impulse -= sliding * (reduced * (friction * -approach / sliding_speed).min(1.0));
             }
             for axis in 0..2 {
+                pair.force[axis] += impulse[axis] / time_step;
                 self.nodes.after[axis][a] += impulse[axis] / mass_a;
                 self.nodes.after[axis][b] -= impulse[axis] / mass_b;
             }
         }
+        self.contacts = pairs;
+    }
+
+    /// The forces of the last step between the faces of a crack: place of the node [m] and force on the face above [N/m].
+    pub(super) fn face_forces(&self, crack: usize) -> impl Iterator<Item = (Point, Vector)> {
+        let grid = self.grid();
+        let pressed = self.contacts.iter().filter(move |p| p.crack as usize == crack && p.force != [0.0; 2]);
+        pressed.map(move |p| (grid.position(self.cut.node(p.above as usize)), Vector::from(p.force)))
     }
 }

@@ -26,6 +26,7 @@ use crate::elastic::Elastic;
 use crate::kernel;
 use crate::particles::Particles;
 use crate::solver::{Handover, Observed, Solver, SolverEnergies};
+use contact::ContactPair;
 use faces::{CrackNow, Tracer};
 use fissure_scene::{
     CrackFrame, End, Kernel, Matrix, OutlineFrame, ParticleFrame, Point, Scene, SolverSettings, Transfer, Vector,
@@ -86,6 +87,8 @@ pub(crate) struct Updated {
     cut: Cut,
     /// What each particle did in the last step, for a look between steps; empty in a scene without a crack, and before the first step.
     motion: Vec<Motion>,
+    /// Overlapping fields at cracks.
+    contacts: Vec<ContactPair>,
 }
 
 /// The motion of a particle in a step.
@@ -203,6 +206,7 @@ impl Updated {
             order: RowOrder::default(),
             cut: Cut::default(),
             motion: Vec::new(),
+            contacts: Vec::new(),
             scene: scene.clone(),
             particles,
         };
@@ -278,11 +282,11 @@ impl Solver for Updated {
         self.add_loads(time, time_step);
         self.update_grid_velocities(time_step);
         // 3.1.3 to 3.1.4.
-        let contacts = self.crack_contacts();
-        self.resolve_crack_contact(&contacts);
+        self.contacts = self.crack_contacts();
+        self.resolve_crack_contact(time_step);
         let impulses_changed = self.hold_nodes(time, time_step) | self.collide_nodes(time, time_step);
         if impulses_changed {
-            self.resolve_crack_contact(&contacts);
+            self.resolve_crack_contact(time_step);
         }
         self.count_work(time, time_step);
         observe(&look::Moment { solver: self, time_step });

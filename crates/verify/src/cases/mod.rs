@@ -5,6 +5,7 @@ pub(crate) mod branching_plate;
 pub(crate) mod cantilever;
 pub(crate) mod cantilever_growth;
 pub(crate) mod center_crack;
+pub(crate) mod closed_crack;
 pub(crate) mod crack_motion;
 pub(crate) mod crack_pairs;
 pub(crate) mod double_cantilever;
