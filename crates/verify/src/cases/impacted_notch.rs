@@ -4,8 +4,9 @@
 //! within 1 µs. E = 190 GPa, ν = 0.3, ρ = 8000 kg/m³, K_Ic = 68 MPa√m, plane strain. The driven nodes end one cell below the notch.
 //!
 //! Reference for a sharp notch with frictionless faces: K_I = 0, so that the maximum hoop stress turns the crack by 70.53° and it starts when |K_II| is
-//! (√3/2) K_Ic, at 13.1 µs by an own finite element solution of the resting notch if contact leaves its K_II as it is; experiments (notches 0.3 mm wide) and phase field or extended finite element
-//! computations give mean angles of 60 to 72° and start later. Cells are counted over the strip below the notch.
+//! (√3/2) K_Ic. Own finite elements reach that at 12.87 µs with contact (pipeline/references/impacted_notch.py, element size to zero), at 13.1 µs if the faces
+//! go through each other. Experiments (notches 0.3 mm wide) and phase field or extended finite element computations give mean angles of 60 to 72° and start
+//! later. Cells are counted over the strip below the notch.
 
 use crate::case::{Case, Options};
 use crate::interpolate::linear;
@@ -27,6 +28,8 @@ const STRIP: f64 = 0.025;
 const TOUGHNESS: f64 = 68e6;
 /// Time [µs], K_I and K_II [MPa√m] of an own finite element solution of the resting notch, in which its faces go through each other.
 const AT_REST: [(f64, f64, f64); 3] = [(12.0, -24.92, -49.09), (13.2, -29.49, -59.75), (14.4, -28.19, -64.39)];
+/// Time [µs] and K_II [MPa√m] of finite elements of 0.25 mm whose faces meet without friction.
+const CLOSED: [(f64, f64); 3] = [(12.0, -50.15), (13.2, -61.59), (14.4, -69.03)];
 /// Length of the path that is judged [m].
 const RUN: f64 = 0.025;
 
@@ -52,11 +55,11 @@ fn plate(cell_size: f64, toughness: f64) -> (Problem, Point) {
     (problem, tip)
 }
 
-/// K of the resting notch whose faces go through each other, beside finite elements that let them.
-fn compare_at_rest(cell_size: f64, tally: &mut Tally<'_>) -> Result<(), SimulationError> {
+/// Time [µs] and [K_I, K_II] [MPa√m] of the resting notch.
+fn at_rest(cell_size: f64, contact: bool, tally: &mut Tally<'_>) -> Result<[Vec<(f64, f64)>; 2], SimulationError> {
     let (problem, _) = plate(cell_size, 1e30);
     let mut problem = problem.until(15e-6, 15);
-    problem.scene.solver.crack_contact = false;
+    problem.scene.solver.crack_contact = contact;
     let mut simulation = Simulation::new(&problem.scene)?;
     let mut curves = [Vec::new(), Vec::new()];
     tally.run(&mut simulation, |now, time| {
@@ -65,10 +68,20 @@ fn compare_at_rest(cell_size: f64, tally: &mut Tally<'_>) -> Result<(), Simulati
         curves[1].push((1e6 * time, 1e-6 * tip.mode_2));
         ControlFlow::Continue(())
     })?;
+    Ok(curves)
+}
+
+/// K of the resting notch beside finite elements, without contact and with it.
+fn compare_at_rest(cell_size: f64, tally: &mut Tally<'_>) -> Result<(), SimulationError> {
+    let [opening, sliding] = at_rest(cell_size, false, tally)?;
     for (time, mode_1, mode_2) in AT_REST {
         let of = format!("at {time} µs without contact");
-        tally.absolute(format!("K_I {of}"), "MPa√m", linear(&curves[0], time), mode_1, None);
-        tally.absolute(format!("K_II {of}"), "MPa√m", linear(&curves[1], time), mode_2, None);
+        tally.absolute(format!("K_I {of}"), "MPa√m", linear(&opening, time), mode_1, None);
+        tally.relative(format!("K_II {of}"), "MPa√m", linear(&sliding, time), mode_2, 0.02);
+    }
+    let [_, sliding] = at_rest(cell_size, true, tally)?;
+    for (time, mode_2) in CLOSED {
+        tally.relative(format!("K_II at {time} µs with contact"), "MPa√m", linear(&sliding, time), mode_2, 0.02);
     }
     Ok(())
 }
@@ -116,10 +129,11 @@ fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationErr
         (last.y - y).atan2(last.x - x).to_degrees()
     });
     tally.note(
-        "Faces that press on each other hand on a part of the impact: K_II is about 1 % more than without contact, and the start 0.15 µs before the 13.1 µs that \
-         finite elements without contact suggest. With half the cell size it is 12.913 µs.",
+        "The 13 µs come from finite elements whose faces go through each other. Faces that press on each other hand on a part of the impact: with contact the \
+         same notch reaches the K_II of the start at 12.87 µs.",
     );
     tally.bound("start", "µs", 1e6 * start, Expected::Between(13.0, 17.0));
+    tally.relative("start, finite elements with contact", "µs", 1e6 * start, 12.87, 0.01);
     tally.bound("mean angle of the path", "°", angle, Expected::Between(60.0, 72.0));
     tally.absolute("angle of the first three cells", "°", first, 70.53, None);
     tally.absolute("largest |K_I|/K_Ic from 10 µs to the start", "", opening, 0.0, 0.05);
