@@ -35,8 +35,8 @@ pub(crate) struct Tip {
     pub(crate) steps_to_look: u32,
     /// Crack length this tip has added so far [m].
     pub(crate) grown: f64,
-    /// `grown` at the last frame [m].
-    pub(crate) grown_at_frame: f64,
+    /// [`Tip::run`] at the last frame [m].
+    pub(crate) run_at_frame: f64,
     /// What was measured last.
     pub(crate) measured: Measured,
     /// Where the increment ends that the tip is on its way through; none between increments.
@@ -58,7 +58,7 @@ impl Tip {
             since_division: f64::INFINITY,
             steps_to_look: 0,
             grown: 0.0,
-            grown_at_frame: 0.0,
+            run_at_frame: 0.0,
             measured: Measured::default(),
             target: None,
             balance: f64::INFINITY,
@@ -68,6 +68,12 @@ impl Tip {
 }
 
 impl Tip {
+    /// Crack length this tip has added so far without what it is ahead of its speed limit [m]: a leap, over the last ligament or into two branches, counts as
+    /// it would have been run.
+    pub(crate) fn run(&self) -> f64 {
+        self.grown - self.ahead_of_limit.max(0.0)
+    }
+
     /// Takes up that the tip has grown by `length` [m].
     pub(crate) fn take_up(&mut self, length: f64) {
         self.grown += length;
@@ -240,7 +246,7 @@ impl Crack {
     ) -> Option<TipRecord> {
         let tip = self.tips[slot(end)].as_ref()?;
         let m = tip.measured;
-        let speed = if interval > 0.0 { (tip.grown - tip.grown_at_frame) / interval } else { 0.0 };
+        let speed = if interval > 0.0 { (tip.run() - tip.run_at_frame) / interval } else { 0.0 };
         Some(TipRecord {
             crack: crack as u32,
             end,

@@ -352,7 +352,7 @@ impl Simulation {
         watch: &mut dyn FnMut(&Self, &Progress) -> ControlFlow<()>,
     ) -> Result<bool, SimulationError> {
         for tip in self.state.cracks.iter_mut().flat_map(|c| c.tips.iter_mut().flatten()) {
-            tip.grown_at_frame = tip.grown;
+            tip.run_at_frame = tip.run();
         }
         let next = self.scene.frames.time(self.state.frame_number + 1);
         self.state.interval = next - self.state.time;

@@ -223,6 +223,7 @@ impl Simulation {
         let mut points = vec![from];
         points.extend(right);
         let mut twin = Tip::new(None);
+        twin.take_up(points.windows(2).map(|w| (w[1] - w[0]).norm()).sum());
         let line = &mut self.state.cracks[crack];
         if let Some(tip) = &mut line.tips[slot(end)] {
             tip.since_division = 0.0;
@@ -231,7 +232,6 @@ impl Simulation {
             tip.heading = Vector::zeros();
             twin.state = tip.state;
             twin.since_division = 0.0;
-            twin.ahead_of_limit = tip.ahead_of_limit;
         }
         let ends = [CrackEnd::Junction { crack: crack as u32 }, CrackEnd::Tip];
         let body = line.body;

@@ -1,0 +1,134 @@
+//! The examples that are not pulls, coarser than they are shown where that makes them quick. Truth: what the page of each says is to be seen.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use fissure_scene::{CrackEnd, Frame, Point, Scene, TipState};
+use fissure_tests::{distance, example, last_frame};
+use std::collections::BTreeMap;
+
+fn solve(name: &str, overrides: &[&str]) -> (Scene, Frame) {
+    let scene = example(name, overrides).unwrap();
+    let frame = last_frame(&scene).unwrap_or_else(|e| panic!("{name}: {e}"));
+    let places =
+        frame.particles.position.iter().chain(frame.cracks.iter().flat_map(|c| c.above.iter().chain(&c.below)));
+    assert!(places.flat_map(|p| [p.x, p.y]).all(f64::is_finite), "{name}");
+    (scene, frame)
+}
+
+/// Pieces with more than a part of all particles.
+fn pieces(frame: &Frame, part: f64) -> usize {
+    let mut particles = BTreeMap::new();
+    frame.particles.piece.iter().for_each(|piece| *particles.entry(piece).or_insert(0_usize) += 1);
+    particles.values().filter(|&&n| n as f64 > part * frame.particles.len() as f64).count()
+}
+
+/// The height at which a path first passes `x`.
+fn height_at(path: &[Point], x: f64) -> f64 {
+    let w = path.windows(2).find(|w| (w[0].x - x) * (w[1].x - x) <= 0.0).unwrap();
+    w[0].y + (w[1].y - w[0].y) * (x - w[0].x) / (w[1].x - w[0].x)
+}
+
+#[test]
+fn soft_discs_stay_whole_and_are_flat_where_they_land() {
+    for name in ["drop-jello", "drop-snow"] {
+        let (_, frame) = solve(name, &[]);
+        assert_eq!(pieces(&frame, 0.05), 1, "{name}");
+        // A circle of 50 m is 28 m wide 2 m above its foot.
+        let landed = frame.particles.position.iter().filter(|p| p.y < 2.0);
+        let half_width = landed.fold(0.0_f64, |most, p| most.max(p.x.abs()));
+        let lowest = frame.particles.position.iter().fold(f64::INFINITY, |least, p| least.min(p.y));
+        assert!(half_width > 25.0, "{name}: {half_width} m");
+        // The floor acts on nodes; what hangs on them may be below it by a part of a cell.
+        assert!(lowest > -0.5, "{name} falls through the floor: {lowest} m");
+    }
+}
+
+#[test]
+fn hard_discs_break_in_two() {
+    for name in ["drop-pmma", "drop-glass"] {
+        let (_, frame) = solve(name, &[]);
+        assert_eq!((frame.tips[0].state, pieces(&frame, 0.25)), (TipState::LeftBody, 2), "{name}");
+    }
+}
+
+#[test]
+fn letters_crack_along_their_guides() {
+    let (scene, frame) = solve("logo", &["grid.particle_spacing=0.03"]);
+    for (crack, drawn) in frame.cracks.iter().zip(&scene.cracks) {
+        let guide = drawn.end_guide.as_ref().or(drawn.start_guide.as_ref()).unwrap();
+        let mut path = drawn.points.clone();
+        path.extend(guide.points.iter().skip(1));
+        let worst = crack.rest.iter().map(|&p| distance(p, &path)).fold(0.0, f64::max);
+        assert!(worst <= 0.5 * scene.cell_size, "{}: a point lies {worst} m off its guide", drawn.name);
+        assert_eq!([crack.start, crack.end], [CrackEnd::Mouth; 2], "{}", drawn.name);
+    }
+}
+
+#[test]
+fn the_beam_cracks_into_its_middle_hole() {
+    let (scene, frame) = solve("three-holes", &["grid.particle_spacing=0.003175"]);
+    let end = *frame.cracks[0].rest.last().unwrap();
+    let mut holes = scene.bodies[0].region.holes.clone();
+    let height = |hole: &[Point]| hole.iter().map(|p| p.y).sum::<f64>() / hole.len() as f64;
+    holes.sort_by(|a, b| height(a).total_cmp(&height(b)));
+    let off = holes.iter().map(|hole| {
+        let mut ring = hole.clone();
+        ring.push(ring[0]);
+        distance(end, &ring)
+    });
+    let off: Vec<f64> = off.collect();
+    assert!(frame.tips[0].state == TipState::LeftBody && off[1] < 1e-9, "ends {off:?} m from the holes");
+}
+
+#[test]
+fn a_crack_leaves_what_is_stiff_and_seeks_what_is_soft() {
+    let (_, frame) = solve("two-materials", &["grid.particle_spacing=0.0025"]);
+    let path = &frame.cracks[0].rest;
+    // The stone reaches down to -0.017 m at x = -0.035 m, the rubber up to -0.02 m at x = 0.07 m.
+    let (before, beside_stone, rubber) = (height_at(path, -0.09), height_at(path, -0.035), height_at(path, 0.07));
+    assert!(before.abs() < 0.005 && beside_stone < -0.017 && rubber < -0.022, "{before} {beside_stone} {rubber}");
+    // The other way round it runs through the disc that is soft now.
+    let changed = ["grid.particle_spacing=0.0025", "region.0.material=rubber", "region.1.material=stone"];
+    let (_, frame) = solve("two-materials", &changed);
+    let inside = height_at(&frame.cracks[0].rest, -0.035);
+    assert!(inside.abs() < 0.005, "{inside}");
+}
+
+#[test]
+fn cracks_follow_painted_veins() {
+    let (scene, frame) = solve("painted", &["grid.particle_spacing=0.003"]);
+    let mean =
+        |places: &[Point]| places.iter().map(|&p| scene.toughness_factor(0, p)).sum::<f64>() / places.len() as f64;
+    let everywhere = mean(&frame.particles.rest);
+    for crack in &frame.cracks {
+        let along = mean(&crack.rest);
+        let straight: Vec<Point> = crack.rest.iter().map(|p| Point::new(p.x, crack.rest[0].y)).collect();
+        let straight = mean(&straight);
+        assert!(along < 0.5 * everywhere && along < 0.5 * straight, "{along} of {everywhere}, {straight} straight on");
+        assert!(crack.rest.len() > 100, "{} points", crack.rest.len());
+    }
+}
+
+#[test]
+fn mud_cracks_meet_and_leave_polygons() {
+    let (_, frame) = solve("mud", &["grid.particle_spacing=0.025"]);
+    let met = frame.tips.iter().filter(|t| t.state == TipState::MetCrack).count();
+    let left = frame.tips.iter().filter(|t| t.state == TipState::LeftBody).count();
+    assert!(met > 40 && left > 5 && pieces(&frame, 0.005) > 15, "{met} met, {left} left, {}", pieces(&frame, 0.005));
+    // A tip that has met another crack ends on it exactly.
+    for crack in &frame.cracks {
+        for (end, at) in [(crack.start, 0), (crack.end, crack.rest.len() - 1)] {
+            if let CrackEnd::Junction { crack: other } = end {
+                let off = distance(crack.rest[at], &frame.cracks[other as usize].rest);
+                assert!(off < 1e-9, "ends {off} m from crack {other}");
+            }
+        }
+    }
+}
+
+#[test]
+fn struck_glass_cracks_divide() {
+    let (scene, frame) = solve("glass-impact", &["grid.particle_spacing=0.0036"]);
+    assert!(frame.cracks.len() >= scene.cracks.len() + 4, "{} cracks", frame.cracks.len());
+    let fastest = frame.tips.iter().map(|t| t.speed).fold(0.0, f64::max);
+    assert!(fastest > 750.0 && fastest <= 1500.0 * 1.001, "{fastest} m/s");
+}
