@@ -46,7 +46,14 @@ impl Total {
             let (own, rest) = before[skipped..].split_at(before[skipped..].partition_point(|p| node_of(p) == node));
             before = rest;
             if near.contains(self.grid.position(node)) {
+                let first = pairs.len();
                 self.add_pairs_of_node(node, further, cracks, &mut pairs);
+                // What the faces did to each other in this step they did, however the node is divided now: tips may be measured again before the next.
+                for before in own {
+                    if let Some(now) = pairs[first..].iter_mut().find(|p| p.crack == before.crack) {
+                        (0..2).for_each(|axis| now.force[axis] += before.force[axis]);
+                    }
+                }
             } else {
                 let now = |p: &ContactPair| ContactPair { segment: near.segment_now(p.crack, p.segment), ..*p };
                 pairs.extend(own.iter().map(now));
@@ -97,6 +104,20 @@ impl Total {
         (length > 0.0).then(|| Vector::new(-tangent.y, tangent.x) / length)
     }
 
+    /// Displacement of the face above less that of the face below [m].
+    fn gap(&self, pair: &ContactPair) -> Vector {
+        let (u, a, b) = (&self.state.displacement, pair.above as usize, pair.below as usize);
+        Vector::new(u[0][a] - u[0][b], u[1][a] - u[1][b])
+    }
+
+    /// The least and the widest gap of all pairs along their normals [m].
+    #[cfg(test)]
+    pub(super) fn least_and_widest_gap(&self) -> [f64; 2] {
+        let along = |pair: &ContactPair| self.segment_normal(pair.crack, pair.segment).map(|n| self.gap(pair).dot(&n));
+        let gaps = self.contacts.iter().filter_map(along);
+        gaps.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, widest], gap| [least.min(gap), widest.max(gap)])
+    }
+
     /// Forgets the forces of the step before.
     pub(super) fn release_crack_contact(&mut self) {
         self.contacts.iter_mut().for_each(|pair| pair.force = [0.0; 2]);
@@ -108,8 +129,8 @@ impl Total {
         let friction = self.settings.crack_friction;
         for pair in &mut pairs {
             let (a, b) = (pair.above as usize, pair.below as usize);
-            let (u, v) = (&self.state.displacement, &self.state.velocity);
-            let gap = Vector::new(u[0][a] - u[0][b], u[1][a] - u[1][b]);
+            let v = &self.state.velocity;
+            let gap = self.gap(pair);
             let speed = Vector::new(v[0][a] - v[0][b], v[1][a] - v[1][b]);
             if gap == Vector::zeros() && speed == Vector::zeros() {
                 continue;

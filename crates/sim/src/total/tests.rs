@@ -180,3 +180,36 @@ fn a_tip_on_its_way_is_cut_as_it_was() {
         assert_eq!(total.state.mass, mass);
     }
 }
+
+/// Truth: the faces meet where they meet. Halves that are thrown against each other press, at no node do they overlap, and what they did to
+/// each other in a step does not depend on a cut made after it.
+#[test]
+fn faces_meet_and_do_not_sink_in() {
+    let mut scene = cracked_plate();
+    scene.solver.crack_contact = true;
+    scene.solver.crack_friction = 0.5;
+    let upper = Selection::Region(test_scenes::rectangle([-1.0, 2.03], [5.0, 5.0]));
+    // Apart first, then together, sliding.
+    test_scenes::set_motion(&mut scene, upper, [0.02, 0.05], 0.0, [0.0, 0.0]);
+    let (mut total, mut cracks) = solver(&scene);
+    let time_step = 0.5 * total.stable_time_step();
+    let force = |total: &Total| total.face_forces(0).map(|(_, force)| force).sum::<Vector>();
+    let (mut pressed, mut widest) = (0, 0.0_f64);
+    for step in 0..1500 {
+        total.step(&cracks, time_step * f64::from(step), time_step, &mut |_| ()).unwrap();
+        let opening = total.least_and_widest_gap();
+        widest = widest.max(opening[1]);
+        // Normals turn while the faces move.
+        assert!(opening[0] > -1e-4 * widest, "step {step}: overlap {} of {widest}", opening[0]);
+        pressed += usize::from(force(&total).y > 0.0);
+    }
+    assert!(pressed > 100 && widest > 1e-3, "{pressed} {widest}");
+    while force(&total).y <= 0.0 {
+        total.step(&cracks, 0.0, time_step, &mut |_| ()).unwrap();
+    }
+    let before = force(&total);
+    let tip = cracks[0].tip_position(End::End);
+    cracks[0].push(End::End, tip + Vector::new(0.1, 0.02) * total.grid.cell_size);
+    total.recut(&cracks, &[(0, End::End)]);
+    assert!((force(&total) - before).norm() < 1e-12 * before.norm(), "{before} {}", force(&total));
+}
