@@ -46,7 +46,7 @@ fn soft_discs_stay_whole_and_are_flat_where_they_land() {
 fn hard_discs_break_in_two() {
     for name in ["drop-pmma", "drop-glass"] {
         let (_, frame) = solve(name, &[]);
-        assert_eq!((frame.tips[0].state, pieces(&frame, 0.25)), (TipState::LeftBody, 2), "{name}");
+        assert_eq!((frame.tips[0].state, pieces(&frame, 0.05)), (TipState::LeftBody, 2), "{name}");
     }
 }
 
