@@ -46,8 +46,10 @@ fn soft_discs_stay_whole_and_are_flat_where_they_land() {
 fn hard_discs_break_in_two() {
     for name in ["drop-pmma", "drop-glass"] {
         let (_, frame) = solve(name, &[]);
-        assert_eq!((frame.tips[0].state, pieces(&frame, 0.05)), (TipState::LeftBody, 2), "{name}");
+        assert_eq!((frame.tips[0].state.is_live(), pieces(&frame, 0.05)), (false, 2), "{name}");
     }
+    // A crack that turns back to itself: a contact at the rim of what was cut anew had lost its mass.
+    solve("drop-glass", &["crack.notch.line=[[0.0, 4.0], [0.0, 15.15]]"]);
 }
 
 #[test]

@@ -23,7 +23,7 @@ const NARROW_RADIUS: f64 = 4.0;
 const WIDE_RADIUS: f64 = 6.0;
 /// A turn of the crack by more than this counts as a kink [rad]: over it the energy of a field along the crack is no longer that of one direction. Growth in
 /// quarter cells along a smooth path turns by less.
-const KINK: f64 = 0.26;
+pub(crate) const KINK: f64 = 0.26;
 
 /// Everything the measurement needs besides the solver.
 #[derive(Debug)]

@@ -38,6 +38,8 @@ struct State {
     crack_energy: f64,
     /// Kinetic and strain energy at the beginning [J/m].
     first_energy: f64,
+    /// The most work that loads, supports, gravity and colliders have done or taken back, at the frames so far [J/m].
+    most_work: f64,
     /// Time between the last two frames [s].
     interval: f64,
     /// Fragment of each particle.
@@ -134,6 +136,7 @@ impl Simulation {
                 cracks,
                 crack_energy: 0.0,
                 first_energy: 0.0,
+                most_work: 0.0,
                 interval: 0.0,
                 pieces: pieces::of_bodies(&particles),
             },
@@ -170,12 +173,14 @@ impl Simulation {
     }
 
     /// Stops a run that has more energy than it was given.
-    fn watch_energy(&self) -> Result<(), SimulationError> {
+    fn watch_energy(&mut self) -> Result<(), SimulationError> {
         let now = self.solver.energies();
         let held = now.kinetic + now.strain;
         let given = self.state.first_energy + now.external_work;
-        // What is exchanged in all, so that a body that only flies is judged by its own energy.
-        let scale = self.state.first_energy + now.external_work.abs();
+        // What has been exchanged in all, so that a body that only flies is judged by its own energy, and one that bounces not by the little that gravity has
+        // left it with at its highest point.
+        self.state.most_work = self.state.most_work.max(now.external_work.abs());
+        let scale = self.state.first_energy + self.state.most_work;
         if held.is_finite() && held <= given + ENERGY_TOLERANCE * scale {
             return Ok(());
         }

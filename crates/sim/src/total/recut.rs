@@ -10,6 +10,7 @@ use super::refresh::Near;
 use super::tie::key;
 use crate::crack::{Crack, slot};
 use crate::crossing::Side;
+use crate::kernel;
 use fissure_scene::{CrackEnd, End, Matrix, Point, Vector, bounds};
 
 /// Stencils are laid anew within so many cells of what has changed of a crack: the window of the division, the kernel, and some room.
@@ -61,6 +62,9 @@ impl Total {
             changed.iter().map(|&(crack, end)| self.changed_box(&cracks[crack], end)).collect();
         self.recut_particles(&boxes);
         self.refresh_probes(cracks, changed, &boxes);
+        // Particles at the rim of a box, up to two rows beyond it, have given mass to nodes outside it, or taken it from them.
+        let reach = Vector::repeat((0.5 * kernel::width(self.settings.kernel) as f64 + 1.0) * self.grid.cell_size);
+        let boxes = boxes.into_iter().map(|(low, high)| (low - reach, high + reach)).collect();
         self.refresh_near(&Near::new(boxes, cracks, changed, &points_before), cracks);
     }
 
