@@ -6,7 +6,7 @@
 //! M = Σ V [(s_ij U_i,1 + S_ij u_i,1 − s_ij U_i,j δ_1j) q,j + ρ a_i U_i,1 q] with Williams' fields (U, S) of one mode, K = E' M / 2: signed,
 //! mode by mode.
 //! Faces that press on each other or rub take a part of both: ∫ t_i [u_i],1 q ds and ∫ t_i [U_i],1 q ds, with the traction t on the face on the +e2
-//! side and the jump [·] from the other side to it, are taken off (the boundary term of the same integration by parts). At a closed crack K_I is then
+//! side and the jump [·] from the other side to it, are taken off (the boundary term of the same integration by parts; of J that of the sliding, since pressed faces have no opening). At a closed crack K_I is then
 //! what it is, zero, and K_II is short of what friction carries.
 //! Sources: Li, Shih & Needleman 1985 (domain form of J); Yau, Wang & Corten 1980 (interaction integral); Nakamura, Shih & Freund 1985 (dynamic terms).
 

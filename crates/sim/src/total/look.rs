@@ -112,8 +112,9 @@ impl Total {
         let sign = left_of_tip(end).sign();
         let contacts = self
             .face_forces(crack)
+            // Elsewhere the crack may have come back behind the tip.
+            .filter(|(place, _)| (place - tip).norm() < radius + 2.0 * self.grid.cell_size)
             .map(|(place, force)| FaceContact { behind: (tip - place).dot(&ahead), force: into * force * sign })
-            .filter(|c| c.behind < radius + self.grid.cell_size)
             .collect();
         TipZone { points, contacts, opening, opening_distance }
     }

@@ -92,11 +92,12 @@ impl Updated {
         let sign = if end == End::End { 1.0 } else { -1.0 };
         let contacts = self
             .face_forces(crack)
+            // Elsewhere the crack may have come back behind the tip.
+            .filter(|(place, _)| (place - tip).norm() < radius + 2.0 * self.scene.cell_size)
             .map(|(place, force)| FaceContact {
                 behind: (tip - place).dot(&ahead),
                 force: Vector::new((frame * force).x * sign, 0.0),
             })
-            .filter(|c| c.behind < radius + self.scene.cell_size)
             .collect();
         TipZone { points, contacts, opening: frame * opening, opening_distance }
     }
