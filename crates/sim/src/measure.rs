@@ -1,12 +1,11 @@
-//! What a crack tip feels: from the material around it to J, K_I, K_II and the kink angle.
+//! What a crack tip feels: from the material around it to J, K_I and K_II.
 
 use crate::StressIntensity;
 use crate::contour::{Contour, ContourHalf, ContourSample};
-use crate::crack::{Crack, Measured};
+use crate::crack::Crack;
 use crate::crossing::Side;
 use crate::domain::domain_integrals;
 use crate::elastic::Elastic;
-use crate::growth;
 use crate::kernel::axis_stencil;
 use crate::solver::{Observed, QuadraturePoint, TipZone};
 use fissure_scene::{End, JMethod, Matrix, ModeSplit, Point, Scene, Vector};
@@ -25,6 +24,23 @@ const WIDE_RADIUS: f64 = 6.0;
 /// quarter cells along a smooth path turns by less.
 pub(crate) const KINK: f64 = 0.26;
 
+/// What the integrals around a tip give. What it means for growth is said by [`crate::growth::judge`].
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Reading {
+    /// J along the crack [J/m²].
+    pub(crate) j_integral: f64,
+    /// K_I and K_II.
+    pub(crate) modes: StressIntensity,
+    /// The stress intensities that decide on growth: those that what is released amounts to, shared out as the modes are.
+    pub(crate) decisive: StressIntensity,
+    /// What of J drives growth [J/m²].
+    pub(crate) released: f64,
+    /// Radius of the domain or contour [m].
+    pub(crate) contour_radius: f64,
+    /// Whether it is smaller than asked for.
+    pub(crate) radius_shrunk: bool,
+}
+
 /// Everything the measurement needs besides the solver.
 #[derive(Debug)]
 pub(crate) struct Gauge<'a> {
@@ -34,7 +50,7 @@ pub(crate) struct Gauge<'a> {
 
 impl Gauge<'_> {
     /// Measures one tip.
-    pub(crate) fn measure(&self, solver: &dyn Observed, cracks: &[Crack], crack: usize, end: End) -> Measured {
+    pub(crate) fn measure(&self, solver: &dyn Observed, cracks: &[Crack], crack: usize, end: End) -> Reading {
         let settings = &self.scene.solver;
         let h = self.scene.cell_size;
         let (radius, radius_shrunk) = match settings.j_method {
@@ -52,7 +68,7 @@ impl Gauge<'_> {
         zone.take_off_mean_velocity();
         let Some(nearest) = zone.points.iter().min_by(|a, b| a.place.norm_squared().total_cmp(&b.place.norm_squared()))
         else {
-            return Measured::default();
+            return Reading::default();
         };
         let elastic = &self.elastic[nearest.material as usize];
         let domain = |outer: f64| domain_integrals(&zone, self.elastic, elastic, h, outer, settings.area_term);
@@ -78,20 +94,14 @@ impl Gauge<'_> {
             split = without_overlap(split, found.closed);
         }
         let decisive = decisive(j_integral, split, elastic.effective_modulus);
-        let kink_angle = decisive.kink_angle(self.scene.growth.bending);
-        let mut measured = Measured {
+        Reading {
             j_integral,
-            mode_1: split.mode_1,
-            mode_2: split.mode_2,
-            kink_angle,
-            equivalent: decisive.equivalent(kink_angle),
+            modes: split,
+            decisive,
             released: decisive.energy_release_rate(elastic.effective_modulus),
-            fracture_toughness: 0.0,
             contour_radius: radius,
             radius_shrunk,
-        };
-        measured.fracture_toughness = growth::toughness_ahead(&cracks[crack], end, &measured, self.scene);
-        measured
+        }
     }
 
     /// Distance from a tip to the nearest thing that would spoil the integral: a ring, another crack, the other end of this one, a kink [m].

@@ -6,6 +6,7 @@
 //! once and ends exactly there.
 
 mod branching;
+mod criterion;
 mod heading;
 mod obstacle;
 mod seeking;
@@ -17,6 +18,7 @@ pub(crate) use seeking::toughness_at;
 pub(crate) use speed::speed_limit;
 
 use crate::crack::{Crack, DIRECTION_LENGTH, Measured, slot};
+use crate::measure::Reading;
 use fissure_scene::{CrackEnd, End, Point, Scene, TipState, Vector};
 use heading::{physical_way, way};
 use obstacle::{beside, first_obstacle};
@@ -33,6 +35,23 @@ pub(crate) struct Advance {
     pub(crate) end: CrackEnd,
     /// State of the tip afterwards.
     pub(crate) state: TipState,
+}
+
+/// What a reading means for growth: direction and load by the criterion. The toughness is left 0: it is that of what lies ahead, and which way that is
+/// [`heading`] may have to say first; see [`toughness_ahead`].
+pub(crate) fn judge(reading: &Reading, scene: &Scene) -> Measured {
+    let kink_angle = reading.decisive.kink_angle(scene.growth.bending);
+    Measured {
+        j_integral: reading.j_integral,
+        mode_1: reading.modes.mode_1,
+        mode_2: reading.modes.mode_2,
+        kink_angle,
+        equivalent: reading.decisive.equivalent(kink_angle),
+        released: reading.released,
+        fracture_toughness: 0.0,
+        contour_radius: reading.contour_radius,
+        radius_shrunk: reading.radius_shrunk,
+    }
 }
 
 /// Whether a tip grows at `time` [s], given what was measured. `slides`: it can also go a part of an increment.

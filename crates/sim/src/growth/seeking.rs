@@ -1,5 +1,6 @@
 //! Cracks seek what is weak: where toughness varies, a tip takes the direction in which it has the most for what it costs.
 
+use super::criterion::share_beside;
 use crate::crack::Crack;
 use fissure_scene::{End, Point, Scene, Vector};
 
@@ -23,8 +24,7 @@ pub(crate) fn toughness_at(crack: &Crack, place: Point, scene: &Scene) -> f64 {
 
 /// The direction (unit vector, at rest) with the highest ratio of hoop stress to toughness, for a tip that the stress opens along `physical`.
 ///
-/// At an angle δ from the direction of the highest hoop stress there is cos³(δ/2) of it (that of mode I). Of equal ratios the one nearest to `physical`
-/// is taken, so that a toughness that is the same all around changes nothing.
+/// Of equal ratios the one nearest to `physical` is taken, so that a toughness that is the same all around changes nothing.
 pub(super) fn seek(crack: &Crack, end: End, physical: Vector, scene: &Scene) -> Vector {
     if !is_varied(crack, scene) {
         return physical;
@@ -33,7 +33,7 @@ pub(super) fn seek(crack: &Crack, end: End, physical: Vector, scene: &Scene) -> 
     let ratio = |angle: f64| {
         let along = super::heading::turned(physical, angle) * (REACH * scene.cell_size);
         let toughness = toughness_at(crack, from + 0.5 * along, scene) + toughness_at(crack, from + along, scene);
-        (0.5 * angle).cos().powi(3) / toughness
+        share_beside(angle) / toughness
     };
     let mut best = (ratio(0.0), 0.0);
     for step in 1..=STEPS {

@@ -48,7 +48,7 @@ impl Simulation {
         let mut measured: Vec<Measured> = Vec::with_capacity(live.len());
         let mut observe = |moment: &dyn Observed| {
             for &(crack, end) in &live {
-                measured.push(gauge.measure(moment, cracks, crack, end));
+                measured.push(growth::judge(&gauge.measure(moment, cracks, crack, end), scene));
             }
         };
         solver.step(cracks, state.time, time_step, &mut observe)?;
@@ -125,8 +125,7 @@ impl Simulation {
                 }
                 return;
             }
-            let gauge = Gauge { scene: &self.scene, elastic: &self.elastic };
-            measured = gauge.measure(self.solver.observed(), &self.state.cracks, crack, end);
+            measured = self.measure(crack, end);
         }
     }
 
@@ -240,11 +239,19 @@ impl Simulation {
         self.solver.recut(&self.state.cracks, &[(crack, end), (new, End::End)]);
     }
 
+    /// Measures a tip between steps.
+    fn measure(&self, crack: usize, end: End) -> Measured {
+        let gauge = Gauge { scene: &self.scene, elastic: &self.elastic };
+        let cracks = &self.state.cracks;
+        let mut measured = growth::judge(&gauge.measure(self.solver.observed(), cracks, crack, end), &self.scene);
+        measured.fracture_toughness = growth::toughness_ahead(&cracks[crack], end, &measured, &self.scene);
+        measured
+    }
+
     /// Measures every live tip now.
     pub fn measure_all(&mut self) {
-        let gauge = Gauge { scene: &self.scene, elastic: &self.elastic };
         for (crack, end) in live_tips(&self.state.cracks) {
-            let m = gauge.measure(self.solver.observed(), &self.state.cracks, crack, end);
+            let m = self.measure(crack, end);
             if let Some(tip) = &mut self.state.cracks[crack].tips[slot(end)] {
                 tip.measured = m;
             }
