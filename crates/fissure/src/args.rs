@@ -78,6 +78,9 @@ pub(crate) struct SceneArguments {
     /// Override one key of the scene file; may be repeated. The value is TOML; a bare word is a string.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
+    /// Fail when there are warnings, before anything is computed.
+    #[arg(long)]
+    pub(crate) strict: bool,
 }
 
 /// Where a take goes and what to do with one that is there.

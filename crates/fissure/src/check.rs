@@ -11,7 +11,7 @@ use fissure_sim::{Estimate, Simulation};
 
 /// Validates a scene and prints what it will cost.
 pub(crate) fn check(arguments: &CheckArguments, report: &Report) -> Result<Exit, Failure> {
-    let scene = scene_file::read(&arguments.scene)?;
+    let scene = scene_file::read(&arguments.scene, report)?;
     let estimate = Simulation::estimate(&scene)?;
     report::print(&if report.is_json() { json(&scene, &estimate) } else { text(&scene, &estimate) })?;
     Ok(Exit::Done)

@@ -1,6 +1,7 @@
 //! The program `fissure`: from a scene to cracked mesh sequences. The numbers it ends with are in [`exit::Exit`].
 
 mod args;
+mod caution;
 mod check;
 mod exit;
 mod failure;

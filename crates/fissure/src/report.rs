@@ -3,10 +3,11 @@
 //! A reader that goes away (`fissure schema | head -1`) is no error.
 
 use crate::args::{LogFormat, TalkArguments};
+use crate::caution::Caution;
 use crate::exit::Exit;
-use crate::failure::Failure;
+use crate::failure::{Failure, Snippet};
 use indicatif::ProgressBar;
-use miette::{GraphicalReportHandler, GraphicalTheme, SourceCode};
+use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, SourceCode};
 use serde::Serialize;
 use std::io::{self, IsTerminal, Write};
 use std::sync::{Mutex, PoisonError};
@@ -30,19 +31,34 @@ enum Line<'a> {
     },
     Warning {
         message: &'a str,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        remedy: Option<&'a str>,
+        #[serde(flatten)]
+        place: Option<LinePlace<'a>>,
     },
     Error {
         exit: u8,
         message: &'a str,
         #[serde(skip_serializing_if = "Option::is_none")]
         remedy: Option<&'a str>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        file: Option<&'a str>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        line: Option<usize>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        column: Option<usize>,
+        #[serde(flatten)]
+        place: Option<LinePlace<'a>>,
     },
+}
+
+/// A place in a text file as a line of `--log json` tells it; line and column from 1.
+#[derive(Serialize)]
+struct LinePlace<'a> {
+    file: &'a str,
+    line: usize,
+    column: usize,
+}
+
+impl<'a> LinePlace<'a> {
+    fn of(snippet: &'a Snippet) -> Self {
+        let (line, column) = line_and_column(snippet);
+        Self { file: snippet.source.name(), line, column }
+    }
 }
 
 impl Report {
@@ -79,32 +95,44 @@ impl Report {
     /// Says something the user should know.
     pub(crate) fn warn(&self, message: &str) {
         if self.is_json() {
-            self.line(&Line::Warning { message });
+            self.line(&Line::Warning { message, remedy: None, place: None });
         } else {
             self.write(&format!("warning: {message}"));
+        }
+    }
+
+    /// Says what will hardly go well with a scene.
+    pub(crate) fn warn_about(&self, caution: &Caution) {
+        if self.is_json() {
+            let place = caution.snippet.as_ref().map(LinePlace::of);
+            self.line(&Line::Warning { message: &caution.message, remedy: Some(&caution.remedy), place });
+        } else {
+            self.draw(caution);
         }
     }
 
     /// Says why a stage stopped.
     pub(crate) fn error(&self, failure: &Failure) {
         if self.is_json() {
-            let place = failure.snippet.as_ref().map(|snippet| (snippet.source.name(), line_and_column(snippet)));
             self.line(&Line::Error {
                 exit: failure.exit as u8,
                 message: &failure.message,
                 remedy: failure.remedy.as_deref(),
-                file: place.map(|(name, _)| name),
-                line: place.map(|(_, (line, _))| line),
-                column: place.map(|(_, (_, column))| column),
+                place: failure.snippet.as_deref().map(LinePlace::of),
             });
-            return;
+        } else {
+            self.draw(failure);
         }
+    }
+
+    /// Writes a message with its remedy and the lines of the file that it is about.
+    fn draw(&self, diagnostic: &dyn Diagnostic) {
         let theme = if self.terminal { GraphicalTheme::default() } else { GraphicalTheme::unicode_nocolor() };
         // Lines are wrapped for people only: programs that search the text would miss a broken word.
         let handler = GraphicalReportHandler::new_themed(theme).with_wrap_lines(self.terminal).with_context_lines(2);
         let mut text = String::new();
-        if handler.render_report(&mut text, failure).is_err() {
-            text.clone_from(&failure.message);
+        if handler.render_report(&mut text, diagnostic).is_err() {
+            text = diagnostic.to_string();
         }
         self.write(text.trim_end());
     }
@@ -150,7 +178,7 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
 }
 
 /// Line and column of a snippet, both from 1.
-fn line_and_column(snippet: &crate::failure::Snippet) -> (usize, usize) {
+fn line_and_column(snippet: &Snippet) -> (usize, usize) {
     let span = (snippet.span.start, 0).into();
     match snippet.source.read_span(&span, 0, 0) {
         Ok(contents) => (contents.line() + 1, contents.column() + 1),

@@ -15,7 +15,7 @@ use fissure_scene::Take;
 /// Simulates a scene and writes its meshes while the solver goes on.
 pub(crate) fn run(arguments: &RunArguments, report: &Report) -> Result<Exit, Failure> {
     let threads = threads::set(arguments.take.threads)?;
-    let scene = scene_file::read(&arguments.scene)?;
+    let scene = scene_file::read(&arguments.scene, report)?;
     let folder = Folder::of(&scene, &arguments.take);
     let interrupt = Interrupt::listen();
     let wanted = |number: i64| arguments.frames.as_ref().is_none_or(|frames| frames.contains(number));

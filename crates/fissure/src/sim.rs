@@ -12,7 +12,7 @@ use crate::{scene_file, threads};
 /// Simulates a scene into a take.
 pub(crate) fn sim(arguments: &SimArguments, report: &Report) -> Result<Exit, Failure> {
     threads::set(arguments.take.threads)?;
-    let scene = scene_file::read(&arguments.scene)?;
+    let scene = scene_file::read(&arguments.scene, report)?;
     let folder = Folder::of(&scene, &arguments.take);
     let interrupt = Interrupt::listen();
     let Some(solve) = solve::open(&scene, &folder, &arguments.take, arguments.frames.as_ref(), report)? else {

@@ -1,4 +1,4 @@
-//! What is wrong with a scene, and where: the words that all checks share.
+//! What is wrong with a scene or will go wrong, and where: the words that all checks share.
 
 use std::fmt;
 
@@ -78,6 +78,24 @@ pub struct SceneFault {
 
 impl SceneFault {
     /// A fault at `path`.
+    pub fn new(path: KeyPath, message: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self { path, message: message.into(), remedy: remedy.into() }
+    }
+}
+
+/// Something in a scene that can be simulated but will hardly give what its author wants: where it is, what it is, and what to do about it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Warning {
+    /// The key of the scene file that holds the value that matters.
+    pub path: KeyPath,
+    /// What is to be expected, with the value.
+    pub message: String,
+    /// What to do about it.
+    pub remedy: String,
+}
+
+impl Warning {
+    /// A warning about what stands at `path`.
     pub fn new(path: KeyPath, message: impl Into<String>, remedy: impl Into<String>) -> Self {
         Self { path, message: message.into(), remedy: remedy.into() }
     }

@@ -3,7 +3,8 @@
 //! This crate promises validated input (every number finite and in range, every reference resolved, geometry simple and
 //! oriented) and takes that another program can read. It knows no physics and draws nothing.
 //!
-//! [`load`] reads a scene file and its drawing; scenes made in code call [`Scene::validate`].
+//! [`load`] reads a scene file and its drawing, [`load_with_warnings`] also says what will hardly go well; scenes made in code call
+//! [`Scene::validate`].
 
 pub mod document;
 mod fault;
@@ -20,10 +21,10 @@ mod take;
 mod toughness;
 mod validate;
 
-pub use fault::{Key, KeyPath, SceneFault};
+pub use fault::{Key, KeyPath, SceneFault, Warning};
 pub use frame::*;
 pub use geometry::*;
-pub use load::{LoadError, LoadErrorKind, load, schema, template};
+pub use load::{LoadError, LoadErrorKind, Loaded, Place, load, load_with_warnings, schema, template};
 pub use materials::{material_preset, material_presets};
 pub use presets::{solver_preset, updated_kernel};
 pub use scene::*;

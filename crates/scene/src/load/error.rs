@@ -72,12 +72,12 @@ impl LoadError {
 
     /// A fault of the scene, shown where its key is written: in the file, or in the override that set it.
     pub(crate) fn fault(source: &SceneSource, fault: SceneFault) -> Self {
-        let (path, source_text, span) = source.locate(&fault.path);
+        let place = source.locate(&fault.path);
         Self {
             kind: LoadErrorKind::Scene,
-            path: path.into(),
-            source_text: Some(source_text),
-            span,
+            path: place.path.into(),
+            source_text: Some(place.text),
+            span: place.span,
             message: fault.message,
             remedy: fault.remedy,
         }

@@ -2,8 +2,10 @@
 
 mod drawing;
 mod error;
+mod loaded;
 mod overrides;
 mod picture;
+mod place;
 mod resolve;
 mod scatter;
 mod seating;
@@ -11,13 +13,15 @@ mod source;
 mod template;
 
 pub use error::{LoadError, LoadErrorKind};
+pub use loaded::Loaded;
+pub use place::Place;
 pub use template::template;
 
 use crate::document::{Document, ToughnessKeys};
 use crate::scene::Scene;
 use drawing::LoadedDrawing;
 use picture::Picture;
-use resolve::Resolver;
+use resolve::{Resolution, Resolver};
 use sha2::{Digest, Sha256};
 use source::SceneSource;
 use std::path::Path;
@@ -29,6 +33,14 @@ use std::path::Path;
 /// # Errors
 /// [`LoadError`], which says where: file, line, value and remedy.
 pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, LoadError> {
+    load_with_warnings(path, overrides).map(|loaded| loaded.scene)
+}
+
+/// As [`load`], with what will hardly go well and where each key of the scene is written.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with_warnings(path: &Path, overrides: &[String]) -> Result<Loaded, LoadError> {
     let (source, document) = SceneSource::read(path, overrides)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let drawing = match &document.drawing {
@@ -38,9 +50,10 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, LoadError> {
     let picture = |keys: &ToughnessKeys| keys.image.as_ref().map(|file| Picture::read(&folder.join(file))).transpose();
     let pictures = document.toughness.iter().map(picture).collect::<Result<Vec<_>, _>>()?;
     let resolver = Resolver::new(&document, drawing.as_ref(), &pictures, default_name(path));
-    let mut scene = resolver.scene().map_err(|fault| LoadError::fault(&source, fault))?;
+    let Resolution { mut scene, origin, warnings } =
+        resolver.resolve().map_err(|fault| LoadError::fault(&source, fault))?;
     scene.hash = hash(&source, drawing.as_ref(), &pictures);
-    Ok(scene)
+    Ok(Loaded { scene, warnings, source, origin })
 }
 
 /// JSON schema of the scene file, for editors and user interfaces.

@@ -2,6 +2,7 @@
 
 use super::error::{LoadError, read_text};
 use super::overrides::Override;
+use super::place::Place;
 use crate::document::Document;
 use crate::fault::{Key, KeyPath, SceneFault, nearest};
 use std::ops::Range;
@@ -9,6 +10,7 @@ use std::path::{Path, PathBuf};
 use toml::de::{DeTable, DeValue};
 
 /// A scene file with its overrides.
+#[derive(Debug)]
 pub(crate) struct SceneSource {
     pub(crate) path: PathBuf,
     pub(crate) text: String,
@@ -60,15 +62,16 @@ impl SceneSource {
     }
 
     /// Where `path` is written: file or override, its text, and the bytes meant. The deepest part that is written counts.
-    pub(crate) fn locate(&self, path: &KeyPath) -> (PathBuf, String, Option<Range<usize>>) {
+    pub(crate) fn locate(&self, path: &KeyPath) -> Place {
         let set = self.overrides.iter().rev().find(|(set, _)| {
             let common = set.0.len().min(path.0.len());
             set.0[..common] == path.0[..common] && path.0.len() >= set.0.len()
         });
         if let Some((_, set)) = set {
-            return (format!("--set {}", set.argument).into(), set.argument.clone(), Some(0..set.argument.len()));
+            let (path, text) = (format!("--set {}", set.argument).into(), set.argument.clone());
+            return Place { path, span: Some(0..text.len()), text };
         }
-        (self.path.clone(), self.text.clone(), self.span(path))
+        Place { path: self.path.clone(), text: self.text.clone(), span: self.span(path) }
     }
 
     /// Bytes of the file where the deepest part of `path` that is written there stands.

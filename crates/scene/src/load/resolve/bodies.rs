@@ -20,7 +20,7 @@ impl<'d> Resolver<'d> {
                 return Err(SceneFault::new(path.then("name"), message, "give each its own name"));
             }
             materials.push(self.material(&path, keys, 0)?);
-            self.material_origin.push(Some(i));
+            self.origin.materials.push(Some(i));
         }
         for (i, keys) in self.document.body.iter().enumerate() {
             let path = KeyPath::item("body", i);
@@ -39,7 +39,7 @@ impl<'d> Resolver<'d> {
                     });
                 }
                 bodies.push(Body { name, region, material, inclusions: Vec::new(), velocities });
-                self.body_origin.push(i);
+                self.origin.bodies.push(i);
             }
         }
         for (i, keys) in self.document.region.iter().enumerate() {
@@ -55,7 +55,7 @@ impl<'d> Resolver<'d> {
         }
         let preset = material_preset(name).ok_or_else(|| self.unknown_material(path, name))?;
         materials.push(preset);
-        self.material_origin.push(None);
+        self.origin.materials.push(None);
         Ok(materials.len() - 1)
     }
 
@@ -89,7 +89,7 @@ impl<'d> Resolver<'d> {
         let Some(name) = name else { return Ok((0..scene.bodies.len()).collect()) };
         let all = scene.bodies.iter().enumerate();
         let made_of: Vec<usize> =
-            all.filter(|(b, _)| self.document.body[self.body_origin[*b]].name == name).map(|(b, _)| b).collect();
+            all.filter(|(b, _)| self.document.body[self.origin.bodies[*b]].name == name).map(|(b, _)| b).collect();
         if made_of.is_empty() { self.body(path, name, scene).map(|body| vec![body]) } else { Ok(made_of) }
     }
 

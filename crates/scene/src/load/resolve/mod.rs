@@ -4,17 +4,22 @@ mod bodies;
 mod cracks;
 mod flaws;
 mod motion;
+mod origin;
 mod settings;
 mod shapes;
+mod short_cracks;
 mod toughness;
 
 use super::drawing::LoadedDrawing;
 use super::picture::Picture;
 use crate::document::Document;
-use crate::fault::{Key, KeyPath, SceneFault};
+use crate::fault::{KeyPath, SceneFault, Warning};
 use crate::geometry::Vector;
 use crate::scene::Scene;
 use crate::validate::positive;
+use std::cell::RefCell;
+
+pub(crate) use origin::Origin;
 
 type Resolved<T> = Result<T, SceneFault>;
 
@@ -30,12 +35,18 @@ pub(crate) struct Resolver<'d> {
     /// For each `[[toughness]]`: its image, if it has one.
     pictures: &'d [Option<Picture>],
     default_name: String,
-    /// For each body of the scene: which `[[body]]` it comes from.
-    body_origin: Vec<usize>,
-    /// For each material of the scene: which `[[material]]` it comes from.
-    material_origin: Vec<Option<usize>>,
-    /// For each patch of toughness of the scene: which `[[toughness]]` it comes from.
-    toughness_origin: Vec<usize>,
+    origin: Origin,
+    /// What will hardly go well, told while resolving. Paths count items as in the document.
+    warnings: RefCell<Vec<Warning>>,
+}
+
+/// A document, resolved.
+#[derive(Debug)]
+pub(crate) struct Resolution {
+    pub(crate) scene: Scene,
+    pub(crate) origin: Origin,
+    /// Paths count items as in the document.
+    pub(crate) warnings: Vec<Warning>,
 }
 
 impl<'d> Resolver<'d> {
@@ -45,12 +56,22 @@ impl<'d> Resolver<'d> {
         pictures: &'d [Option<Picture>],
         default_name: String,
     ) -> Self {
-        let (body_origin, material_origin, toughness_origin) = (Vec::new(), Vec::new(), Vec::new());
-        Self { document, drawing, pictures, default_name, body_origin, material_origin, toughness_origin }
+        let origin = Origin { drawn_cracks: document.crack.len(), ..Origin::default() };
+        Self { document, drawing, pictures, default_name, origin, warnings: RefCell::default() }
     }
 
-    /// The scene, validated.
-    pub(crate) fn scene(mut self) -> Resolved<Scene> {
+    /// Tells something that will hardly go well; the path counts items as in the document.
+    pub(super) fn warn(&self, warning: Warning) {
+        self.warnings.borrow_mut().push(warning);
+    }
+
+    /// The scene, validated, with what was told on the way.
+    pub(crate) fn resolve(mut self) -> Resolved<Resolution> {
+        let scene = self.scene()?;
+        Ok(Resolution { scene, origin: self.origin, warnings: self.warnings.into_inner() })
+    }
+
+    fn scene(&mut self) -> Resolved<Scene> {
         let document = self.document;
         if document.body.is_empty() {
             return Err(SceneFault::new(KeyPath::top("body"), "the scene has no body", "add a `[[body]]`"));
@@ -91,27 +112,13 @@ impl<'d> Resolver<'d> {
         scene.supports = self.supports(&scene, tolerance)?;
         self.initial_velocities(&mut scene, tolerance)?;
         // The bodies must be sound before anything is fitted into them.
-        scene.validate().map_err(|fault| self.in_document(fault))?;
+        scene.validate().map_err(|fault| self.origin.in_document(fault))?;
         self.inclusions(&mut scene, tolerance)?;
         scene.toughness = self.toughness(&scene, tolerance)?;
         self.cracks(&mut scene, tolerance)?;
         self.flaws(&mut scene, tolerance)?;
-        scene.validate().map_err(|fault| self.in_document(fault))?;
+        scene.validate().map_err(|fault| self.origin.in_document(fault))?;
+        self.short_cracks(&scene);
         Ok(scene)
-    }
-
-    /// A fault's path, counted as in the document.
-    fn in_document(&self, mut fault: SceneFault) -> SceneFault {
-        if let [Key::Name(array), Key::Index(index), ..] = fault.path.0.as_mut_slice() {
-            match array.as_str() {
-                "body" => *index = self.body_origin.get(*index).copied().unwrap_or(*index),
-                "material" => *index = self.material_origin.get(*index).copied().flatten().unwrap_or(usize::MAX),
-                "toughness" => *index = self.toughness_origin.get(*index).copied().unwrap_or(*index),
-                // Only cracks that were scattered come after those that were drawn.
-                "crack" if *index >= self.document.crack.len() => fault.path = KeyPath::top("flaws"),
-                _ => {}
-            }
-        }
-        fault
     }
 }

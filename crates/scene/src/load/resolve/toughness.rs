@@ -29,7 +29,7 @@ impl<'d> Resolver<'d> {
             for body in bodies {
                 patches.extend(kinds.iter().map(|kind| ToughnessPatch { body, kind: kind.clone() }));
             }
-            self.toughness_origin.resize(patches.len(), i);
+            self.origin.toughness.resize(patches.len(), i);
         }
         Ok(patches)
     }
