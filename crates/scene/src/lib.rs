@@ -15,6 +15,7 @@ mod load;
 mod materials;
 mod outline;
 mod presets;
+mod regular_file;
 mod scene;
 mod settings;
 mod take;

@@ -136,15 +136,9 @@ fn pictures_that_cannot_be_used_are_named() {
     let mistakes: [Mistake<'_>; 10] = [
         (None, "", LoadErrorKind::InputFile, None, "cannot read the image"),
         (Some(b"<svg/>"), "", LoadErrorKind::InputFile, None, "not a PNG image"),
-        (Some(&vast), "", LoadErrorKind::InputFile, None, "its pixels take more than 1024 MiB"),
+        (Some(&vast), "", LoadErrorKind::InputFile, None, "100000 x 100000 pixels"),
         (Some(b"\x89PNG\r\n\x1a\n\0\0"), "", LoadErrorKind::InputFile, None, "not a PNG image"),
-        (
-            Some(b""),
-            "black = 0\n",
-            LoadErrorKind::Scene,
-            Some(7),
-            "the factor of black is 0; it must be a finite number above 0",
-        ),
+        (Some(b""), "black = 0\n", LoadErrorKind::Scene, Some(7), "the factor of black is 0; it must be above 0"),
         (Some(b""), "white = -1\n", LoadErrorKind::Scene, Some(7), "the factor of white is -1"),
         (
             Some(b""),

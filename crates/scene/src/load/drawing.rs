@@ -3,13 +3,13 @@
 //! Paint does not matter: an element counts whether or not it is filled, stroked or displayed. Curves come from usvg in
 //! single precision, about 1e-7 of the size of the drawing.
 
-use super::error::{LoadError, read_bytes, read_text};
+use super::error::{DRAWING, FONT, LoadError};
 use super::seating::Complaint;
 use crate::document::{Drawing, Origin};
 use crate::fault::{KeyPath, SceneFault, nearest, show};
 use crate::geometry::{Point, Region, bounds};
 use crate::outline::{FillRule, clean_ring, find_crossing, nest_rings};
-use crate::validate::{finite_pair, positive};
+use crate::validate::{COORDINATE, LENGTH};
 use kurbo::{Affine, BezPath, PathEl, Shape as _};
 use std::path::{Path, PathBuf};
 use usvg::roxmltree;
@@ -41,7 +41,7 @@ impl LoadedDrawing {
         fault: impl Fn(SceneFault) -> LoadError,
     ) -> Result<Self, LoadError> {
         let path = folder.join(&drawing.file);
-        let text = read_text(&path, "the drawing")?;
+        let text = DRAWING.read_text(&path)?;
         let malformed = |span, message: String| {
             LoadError::malformed(&path, &text, span, message, "open the drawing in an SVG editor and save it again")
         };
@@ -54,7 +54,7 @@ impl LoadedDrawing {
         let mut options = usvg::Options { style_sheet: Some(SHOW_ALL.into()), ..Default::default() };
         if document.descendants().any(|n| n.has_tag_name(("http://www.w3.org/2000/svg", "text"))) {
             if let Some(font) = &drawing.font {
-                bytes.push(read_bytes(&folder.join(font), "the font")?);
+                bytes.push(FONT.read(&folder.join(font))?);
             }
             let font = bytes.get(1).cloned();
             load_fonts(&mut options, font, &folder.join(drawing.font.as_deref().unwrap_or(Path::new(""))))?;
@@ -244,11 +244,11 @@ fn scale(drawing: &Drawing, document: &roxmltree::Document<'_>, size: usvg::Size
             return Err(SceneFault::new(key("metres_per_unit"), message, "give one of them"));
         }
         (Some(metres), None) => {
-            positive(key("width"), "the width of the drawing", metres)?;
+            LENGTH.check(key("width"), "the width of the drawing", metres)?;
             metres / w
         }
         (None, Some(metres)) => {
-            positive(key("metres_per_unit"), "`metres_per_unit`", metres)?;
+            LENGTH.check(key("metres_per_unit"), "`metres_per_unit`", metres)?;
             metres
         }
         (None, None) => {
@@ -266,7 +266,7 @@ fn scale(drawing: &Drawing, document: &roxmltree::Document<'_>, size: usvg::Size
         Origin::Center => [x + w / 2.0, y + h / 2.0],
         Origin::Corner => [x, y + h],
         Origin::Point(point) => {
-            finite_pair(key("origin"), "the origin", point)?;
+            COORDINATE.check_pair(key("origin"), "the origin", point)?;
             point
         }
     };

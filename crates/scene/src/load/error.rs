@@ -2,6 +2,7 @@
 
 use super::source::SceneSource;
 use crate::fault::SceneFault;
+use crate::regular_file::read_regular;
 use std::ops::Range;
 use std::path::Path;
 
@@ -84,20 +85,50 @@ impl LoadError {
     }
 }
 
-/// Reads a text file.
-pub(crate) fn read_text(path: &Path, what: &str) -> Result<String, LoadError> {
-    let bytes = read_bytes(path, what)?;
-    String::from_utf8(bytes).map_err(|e| {
-        LoadError::file(
-            path,
-            format!("{what} is not UTF-8 text (byte {})", e.utf8_error().valid_up_to()),
-            "save it as plain UTF-8 text (a compressed SVG has to be unpacked first)",
-        )
-    })
+/// A kind of input file, and how large one may be.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct InputFile {
+    /// What it is, in words.
+    what: &'static str,
+    /// Most bytes of it.
+    most_bytes: u64,
 }
 
-/// Reads a file.
-pub(crate) fn read_bytes(path: &Path, what: &str) -> Result<Vec<u8>, LoadError> {
-    std::fs::read(path)
-        .map_err(|e| LoadError::file(path, format!("cannot read {what}: {e}"), "check the path and its permissions"))
+/// The scene file. Its text takes some 60 times as much memory once it is parsed.
+pub(crate) const SCENE_FILE: InputFile = InputFile { what: "the scene file", most_bytes: 8 << 20 };
+/// The drawing.
+pub(crate) const DRAWING: InputFile = InputFile { what: "the drawing", most_bytes: 32 << 20 };
+/// A font; the largest in use, with the letters of East Asia, have some 30 MiB.
+pub(crate) const FONT: InputFile = InputFile { what: "the font", most_bytes: 128 << 20 };
+/// An image that paints values.
+pub(crate) const IMAGE: InputFile = InputFile { what: "the image", most_bytes: 128 << 20 };
+
+impl InputFile {
+    /// The same with fewer bytes.
+    pub(crate) fn at_most(self, bytes: u64) -> Self {
+        Self { most_bytes: self.most_bytes.min(bytes), ..self }
+    }
+
+    /// Reads it as text.
+    pub(crate) fn read_text(self, path: &Path) -> Result<String, LoadError> {
+        String::from_utf8(self.read(path)?).map_err(|e| {
+            LoadError::file(
+                path,
+                format!("{} is not UTF-8 text (byte {})", self.what, e.utf8_error().valid_up_to()),
+                "save it as plain UTF-8 text (a compressed SVG has to be unpacked first)",
+            )
+        })
+    }
+
+    /// Reads its bytes.
+    pub(crate) fn read(self, path: &Path) -> Result<Vec<u8>, LoadError> {
+        read_regular(path, self.most_bytes).map_err(|e| {
+            let remedy = match e.kind() {
+                std::io::ErrorKind::FileTooLarge => "make it smaller",
+                std::io::ErrorKind::IsADirectory | std::io::ErrorKind::InvalidInput => "name a regular file",
+                _ => "check the path and its permissions",
+            };
+            LoadError::file(path, format!("cannot read {}: {e}", self.what), remedy)
+        })
+    }
 }

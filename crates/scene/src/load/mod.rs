@@ -20,7 +20,7 @@ pub use template::template;
 use crate::document::{Document, ToughnessKeys};
 use crate::scene::Scene;
 use drawing::LoadedDrawing;
-use picture::Picture;
+use picture::{Budget, Picture};
 use resolve::{Resolution, Resolver};
 use sha2::{Digest, Sha256};
 use source::SceneSource;
@@ -47,7 +47,10 @@ pub fn load_with_warnings(path: &Path, overrides: &[String]) -> Result<Loaded, L
         Some(drawing) => Some(LoadedDrawing::read(drawing, folder, |fault| LoadError::fault(&source, fault))?),
         None => None,
     };
-    let picture = |keys: &ToughnessKeys| keys.image.as_ref().map(|file| Picture::read(&folder.join(file))).transpose();
+    let mut budget = Budget::of_a_scene();
+    let picture = |keys: &ToughnessKeys| {
+        keys.image.as_ref().map(|file| Picture::read(&folder.join(file), &mut budget)).transpose()
+    };
     let pictures = document.toughness.iter().map(picture).collect::<Result<Vec<_>, _>>()?;
     let resolver = Resolver::new(&document, drawing.as_ref(), &pictures, default_name(path));
     let Resolution { mut scene, origin, warnings } =

@@ -1,6 +1,6 @@
 //! Pictures that paint values.
 
-use super::error::{LoadError, read_bytes};
+use super::error::{IMAGE, LoadError};
 use png::{BitDepth, Transformations};
 use std::io::Cursor;
 use std::path::Path;
@@ -18,24 +18,48 @@ pub(crate) struct Picture {
     pub(crate) light: Vec<f64>,
 }
 
+/// What the images of a scene may take together.
+#[derive(Debug)]
+pub(crate) struct Budget {
+    pixels: u64,
+    bytes: u64,
+}
+
+impl Budget {
+    /// Pixels of all images: two of 4096 x 4096. A picture takes 8 bytes for each, and about three times as much on its way there.
+    const PIXELS: u64 = 1 << 25;
+    /// Pixels of one image.
+    const PIXELS_OF_ONE: u64 = 1 << 24;
+    /// Bytes of all files.
+    const BYTES: u64 = 256 << 20;
+
+    /// The budget of one scene.
+    pub(crate) fn of_a_scene() -> Self {
+        Self { pixels: Self::PIXELS, bytes: Self::BYTES }
+    }
+}
+
 impl Picture {
     /// Reads a PNG of any kind. Colours become their luminance as encoded; what is transparent is white.
-    pub(crate) fn read(path: &Path) -> Result<Self, LoadError> {
-        let bytes = read_bytes(path, "the image")?;
-        let (columns, pixels) = decode(&bytes)
-            .map_err(|e| LoadError::file(path, format!("not a PNG image: {e}"), "save it as PNG"))?
-            .ok_or_else(|| {
-                let most = format!("its pixels take more than {} MiB", MOST_BYTES >> 20);
-                LoadError::file(path, most, "scale it down: pixels finer than particles are averaged")
-            })?;
-        // The weights of Rec. 709, in integers so that grey keeps its value exactly.
-        let light = |&[r, g, b, opacity]: &Pixel| {
-            let full = f64::from(u16::MAX);
-            let luminance = 2126 * u64::from(r) + 7152 * u64::from(g) + 722 * u64::from(b);
-            let (luminance, opacity) = (luminance as f64 / (10_000.0 * full), f64::from(opacity) / full);
-            opacity * luminance + (1.0 - opacity)
-        };
-        let light: Vec<f64> = pixels.chunks_exact(columns).rev().flatten().map(light).collect();
+    pub(crate) fn read(path: &Path, budget: &mut Budget) -> Result<Self, LoadError> {
+        let bytes = IMAGE.at_most(budget.bytes).read(path)?;
+        budget.bytes -= bytes.len() as u64;
+        let most = budget.pixels.min(Budget::PIXELS_OF_ONE);
+        let (columns, light) = decode(&bytes, most).map_err(|refusal| match refusal {
+            Refusal::Malformed(cause) => {
+                LoadError::file(path, format!("not a PNG image: {cause}"), "save it as PNG, whole")
+            }
+            Refusal::TooLarge { columns, rows } => LoadError::file(
+                path,
+                format!("it has {columns} x {rows} pixels, at most {most} can be read"),
+                format!(
+                    "scale it down: pixels finer than particles are averaged. One image may have {} pixels, all together {}",
+                    Budget::PIXELS_OF_ONE,
+                    Budget::PIXELS
+                ),
+            ),
+        })?;
+        budget.pixels -= light.len() as u64;
         Ok(Self { bytes, columns, rows: light.len() / columns, light })
     }
 
@@ -49,30 +73,69 @@ impl Picture {
     }
 }
 
-/// Most bytes that the pixels of a picture may take.
-const MOST_BYTES: usize = 1 << 30;
+/// Why an image cannot be read.
+enum Refusal {
+    Malformed(png::DecodingError),
+    TooLarge { columns: u32, rows: u32 },
+}
 
-/// Red, green, blue and opacity, 16 bits each.
-type Pixel = [u16; 4];
+impl From<png::DecodingError> for Refusal {
+    fn from(cause: png::DecodingError) -> Self {
+        Self::Malformed(cause)
+    }
+}
 
-/// Columns and pixels of a PNG, row by row from the highest; none when it is too large.
-fn decode(bytes: &[u8]) -> Result<Option<(usize, Vec<Pixel>)>, png::DecodingError> {
+/// Columns and light of a PNG, row by row from the lowest. Its size is looked at before any pixel is.
+fn decode(bytes: &[u8], most_pixels: u64) -> Result<(usize, Vec<f64>), Refusal> {
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
     decoder.set_transformations(Transformations::ALPHA);
-    let mut reader = decoder.read_info()?;
-    let Some(size) = reader.output_buffer_size().filter(|&size| size <= MOST_BYTES) else { return Ok(None) };
-    let mut samples = vec![0; size];
+    // Texts and colour profiles are compressed too, and may unfold to any size.
+    decoder.set_ignore_text_chunk(true);
+    decoder.set_ignore_iccp_chunk(true);
+    let (columns, rows) = {
+        let header = decoder.read_header_info()?;
+        (header.width, header.height)
+    };
+    let mut reader = match u64::from(columns) * u64::from(rows) {
+        pixels if pixels <= most_pixels => decoder.read_info()?,
+        _ => return Err(Refusal::TooLarge { columns, rows }),
+    };
+    let mut samples = vec![0; reader.output_buffer_size().ok_or(Refusal::TooLarge { columns, rows })?];
     let frame = reader.next_frame(&mut samples)?;
-    let samples: Vec<u16> = match frame.bit_depth {
-        BitDepth::Sixteen => samples.chunks_exact(2).map(|pair| u16::from_be_bytes([pair[0], pair[1]])).collect(),
-        // 255 is as white as 65535.
-        _ => samples.iter().map(|&sample| u16::from(sample) * 257).collect(),
-    };
-    let pixels: Vec<Pixel> = match frame.color_type.samples() {
-        2 => samples.chunks_exact(2).map(|p| [p[0], p[0], p[0], p[1]]).collect(),
-        _ => samples.chunks_exact(4).map(|p| [p[0], p[1], p[2], p[3]]).collect(),
-    };
-    Ok(Some((frame.width as usize, pixels)))
+    let mut light = Vec::with_capacity(frame.width as usize * frame.height as usize);
+    for row in samples[..frame.buffer_size()].chunks_exact(frame.line_size).rev() {
+        match (frame.color_type.samples(), frame.bit_depth) {
+            (2, BitDepth::Sixteen) => light.extend(row.as_chunks::<4>().0.iter().map(|p| grey(wide(p)))),
+            (2, _) => light.extend(row.as_chunks::<2>().0.iter().map(|p| grey(p.map(widened)))),
+            (_, BitDepth::Sixteen) => light.extend(row.as_chunks::<8>().0.iter().map(|p| luminance(wide(p)))),
+            _ => light.extend(row.as_chunks::<4>().0.iter().map(|p| luminance(p.map(widened)))),
+        }
+    }
+    Ok((frame.width as usize, light))
+}
+
+/// Samples of 16 bits from their bytes, `BYTES` = 2 `SAMPLES`.
+fn wide<const BYTES: usize, const SAMPLES: usize>(bytes: &[u8; BYTES]) -> [u16; SAMPLES] {
+    std::array::from_fn(|i| u16::from_be_bytes([bytes[2 * i], bytes[2 * i + 1]]))
+}
+
+/// A sample of 8 bits in 16: 255 is as white as 65535.
+fn widened(sample: u8) -> u16 {
+    u16::from(sample) * 257
+}
+
+/// Light of a grey pixel and its opacity.
+fn grey([value, opacity]: [u16; 2]) -> f64 {
+    luminance([value, value, value, opacity])
+}
+
+/// Light of a pixel: red, green, blue and opacity.
+fn luminance([r, g, b, opacity]: [u16; 4]) -> f64 {
+    // The weights of Rec. 709, in integers so that grey keeps its value exactly.
+    let full = f64::from(u16::MAX);
+    let luminance = 2126 * u64::from(r) + 7152 * u64::from(g) + 722 * u64::from(b);
+    let (luminance, opacity) = (luminance as f64 / (10_000.0 * full), f64::from(opacity) / full);
+    opacity * luminance + (1.0 - opacity)
 }
 
 /// Means over `count` equal parts of each line of `length` values.

@@ -37,6 +37,9 @@ pub(crate) struct Flaw {
 /// Darts thrown for one flaw before the plate counts as full.
 const MOST_DARTS: usize = 10_000;
 
+/// Comparisons of darts with obstacles before the plate counts as full: they take about a second.
+const MOST_COMPARISONS: usize = 500_000_000;
+
 /// Throws darts until there are as many flaws as asked for, or none fits any more.
 ///
 /// Centres lie in one of `regions` and, if given, in one of `within`; flaws keep their margin from the rings of `regions`, from `lines` and
@@ -52,6 +55,7 @@ pub(crate) fn scatter(flaws: &Flaws, regions: &[&Region], within: Option<&[Regio
         obstacles.extend((0..ring.len()).map(|i| [ring[i], ring[(i + 1) % ring.len()]]));
     }
     let mut placed = Vec::new();
+    let mut comparisons_left = MOST_COMPARISONS;
     while placed.len() < flaws.count {
         let dart = || {
             let center = Point::new(random.between(low.x, high.x), random.between(low.y, high.y));
@@ -65,7 +69,10 @@ pub(crate) fn scatter(flaws: &Flaws, regions: &[&Region], within: Option<&[Regio
             let ends = [center - arm, center + arm];
             is_clear(ends, &obstacles, flaws.margin).then_some(Flaw { region, ends })
         };
-        let Some(flaw) = std::iter::repeat_with(dart).take(MOST_DARTS).flatten().next() else { break };
+        let most_darts = MOST_DARTS.min(comparisons_left / obstacles.len().max(1));
+        let mut darts = std::iter::repeat_with(dart).take(most_darts).enumerate();
+        let Some((missed, flaw)) = darts.find_map(|(missed, flaw)| Some((missed, flaw?))) else { break };
+        comparisons_left -= (missed + 1) * obstacles.len();
         obstacles.push(flaw.ends);
         placed.push(flaw);
     }

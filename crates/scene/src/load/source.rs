@@ -1,6 +1,6 @@
 //! A scene file as text, its overrides, and where each key is written.
 
-use super::error::{LoadError, read_text};
+use super::error::{LoadError, SCENE_FILE};
 use super::overrides::Override;
 use super::place::Place;
 use crate::document::Document;
@@ -20,7 +20,7 @@ pub(crate) struct SceneSource {
 impl SceneSource {
     /// Reads a scene file and applies `overrides` to it.
     pub(crate) fn read(path: &Path, overrides: &[String]) -> Result<(Self, Document), LoadError> {
-        let text = read_text(path, "the scene file")?;
+        let text = SCENE_FILE.read_text(path)?;
         let malformed = |e: toml::de::Error| {
             LoadError::malformed(
                 path,

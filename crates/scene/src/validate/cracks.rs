@@ -2,7 +2,7 @@
 
 use super::curve::{Clock, validate_schedule};
 use super::region::is_on;
-use super::{Check, UNIT, finite_points, unique_name};
+use super::{COORDINATE, Check, POINTS, UNIT, unique_name};
 use crate::fault::{KeyPath, SceneFault, show};
 use crate::geometry::{Point, Region, nearest_on_segment, orientation, polyline_length, segments_touch};
 use crate::outline::{find_crossing, nearest_on_rings};
@@ -109,7 +109,8 @@ pub(crate) fn no_tip(path: &KeyPath, crack: &str, end: &str, at: Point, on: &str
 
 /// A polyline has length, and does not cross itself.
 pub(super) fn validate_polyline(path: &KeyPath, what: &str, points: &[Point]) -> Check {
-    finite_points(path, what, points)?;
+    POINTS.check(path, what, points.len())?;
+    COORDINATE.check_points(path, what, points)?;
     if points.len() < 2 || polyline_length(points) == 0.0 {
         let at = points.first().map_or_else(|| "it has no points".to_owned(), |&p| format!("it lies at {} m", show(p)));
         return Err(SceneFault::new(

@@ -1,6 +1,6 @@
 //! Values over time, in seconds or in frames.
 
-use super::{Check, NOT_NEGATIVE, UNIT, finite_pair};
+use super::{CURVE_FACTOR, Check, FRAME, KEYFRAMES, Range, SPEED_FACTOR, TIME, UNIT};
 use crate::fault::{KeyPath, SceneFault, short};
 use crate::scene::Curve;
 
@@ -28,10 +28,19 @@ impl Clock {
         }
     }
 
-    /// That the numbers are finite and rise. `what`: the points of what, in words.
+    /// What the numbers may be.
+    fn range(self) -> Range {
+        match self {
+            Self::Seconds => TIME,
+            Self::Frames => FRAME,
+        }
+    }
+
+    /// That the numbers are in range and rise. `what`: the points of what, in words.
     fn check(self, path: &KeyPath, what: &str, points: &[(f64, f64)]) -> Check {
-        for (i, &(at, value)) in points.iter().enumerate() {
-            finite_pair(path.then(i), &format!("one of {what}"), [at, value])?;
+        KEYFRAMES.check(path, "this", points.len())?;
+        for (i, &(at, _)) in points.iter().enumerate() {
+            self.range().check(path.then(i), &format!("the {} of one of {what}", self.word()), at)?;
             if i > 0 && points[i - 1].0 >= at {
                 return Err(self.not_rising(path.then(i), what, points[i - 1].0, at));
             }
@@ -51,7 +60,11 @@ impl Clock {
 
 /// The factor of a load or support over time.
 pub(super) fn validate_curve(path: &KeyPath, curve: &Curve) -> Check {
-    Clock::Seconds.check(&path.then("curve"), "the points of the curve", &curve.points)
+    let path = path.then("curve");
+    Clock::Seconds.check(&path, "the points of the curve", &curve.points)?;
+    let factor =
+        |(i, &(_, factor)): (usize, &(f64, f64))| CURVE_FACTOR.check(path.then(i), "a factor of the curve", factor);
+    curve.points.iter().enumerate().try_for_each(factor)
 }
 
 /// The schedule of a guide: fractions of its length that never fall.
@@ -74,7 +87,7 @@ pub(crate) fn validate_schedule(path: &KeyPath, guide: &str, clock: Clock, point
 pub(crate) fn validate_speed(path: &KeyPath, limit: f64, clock: Clock, points: &[(f64, f64)]) -> Check {
     clock.check(path, "the keyframes of the speed", points)?;
     for (i, &(_, factor)) in points.iter().enumerate() {
-        NOT_NEGATIVE.check(path.then(i), "a factor on the speed limit", factor)?;
+        SPEED_FACTOR.check(path.then(i), "a factor on the speed limit", factor)?;
         if factor * limit > 1.0 {
             return Err(SceneFault::new(
                 path.then(i),

@@ -1,85 +1,30 @@
 //! What a scene must fulfil to be simulated. Every range is written here, once.
 
+mod count;
 mod cracks;
 mod curve;
 mod motion;
+mod range;
 mod region;
 mod settings;
 mod toughness;
 
+pub(crate) use count::*;
 #[cfg(test)]
 pub(crate) use cracks::leaves;
-pub(crate) use cracks::no_tip;
-pub(crate) use cracks::validate_strength;
+pub(crate) use cracks::{no_tip, validate_strength};
 pub(crate) use curve::{Clock, validate_schedule, validate_speed};
+pub(crate) use range::*;
 pub(crate) use region::{overlap, validate_region};
 pub(crate) use toughness::{outside, validate_corners};
 
 use crate::document::PolygonKeys;
 use crate::fault::{KeyPath, SceneFault, short};
-use crate::geometry::{Point, Vector};
+use crate::geometry::Vector;
 use crate::scene::Scene;
 use motion::validate_collider;
 
 type Check = Result<(), SceneFault>;
-
-/// A range of numbers and the words for it.
-#[derive(Clone, Copy)]
-struct Range {
-    holds: fn(f64) -> bool,
-    words: &'static str,
-}
-
-const POSITIVE: Range = Range { holds: |v| v > 0.0 && v.is_finite(), words: "a finite number above 0" };
-const NOT_NEGATIVE: Range = Range { holds: |v| v >= 0.0 && v.is_finite(), words: "a finite number of at least 0" };
-const FRICTION: Range = Range { holds: |v| v >= 0.0, words: "at least 0 (inf: stick)" };
-const FINITE: Range = Range { holds: f64::is_finite, words: "finite" };
-const FRACTION: Range = Range { holds: |v| v > 0.0 && v <= 1.0, words: "above 0 and at most 1" };
-const UNIT: Range = Range { holds: |v| (0.0..=1.0).contains(&v), words: "from 0 to 1" };
-const POISSON: Range = Range { holds: |v| v > -1.0 && v < 0.5, words: "above -1 and below 0.5" };
-const SPREAD: Range = Range { holds: |v| (0.0..1.0).contains(&v), words: "at least 0 and below 1" };
-const ABOVE_ONE: Range = Range { holds: |v| v > 1.0 && v.is_finite(), words: "a finite number above 1" };
-const ACUTE: Range = Range { holds: |v| v > 0.0 && v < 90.0, words: "above 0 and below 90 degrees" };
-const BELOW_ONE: Range = Range { holds: |v| v > 0.0 && v < 1.0, words: "above 0 and below 1" };
-
-impl Range {
-    fn check(self, path: KeyPath, what: &str, value: f64) -> Check {
-        if (self.holds)(value) {
-            return Ok(());
-        }
-        Err(SceneFault::new(path, format!("{what} is {value}"), format!("it must be {}", self.words)))
-    }
-}
-
-/// That both components are finite.
-pub(crate) fn finite_pair(path: KeyPath, what: &str, value: [f64; 2]) -> Check {
-    value.into_iter().try_for_each(|v| FINITE.check(path.clone(), what, v))
-}
-
-/// That all points are finite.
-pub(crate) fn finite_points(path: &KeyPath, what: &str, points: &[Point]) -> Check {
-    points.iter().try_for_each(|p| finite_pair(path.clone(), what, [p.x, p.y]))
-}
-
-/// That a scale is above 0.
-pub(crate) fn positive(path: KeyPath, what: &str, value: f64) -> Check {
-    POSITIVE.check(path, what, value)
-}
-
-/// That a number is finite.
-pub(crate) fn finite(path: KeyPath, what: &str, value: f64) -> Check {
-    FINITE.check(path, what, value)
-}
-
-/// That a number is finite and at least 0.
-pub(crate) fn not_negative(path: KeyPath, what: &str, value: f64) -> Check {
-    NOT_NEGATIVE.check(path, what, value)
-}
-
-/// That a spread relative to a mean leaves something.
-pub(crate) fn spread(path: KeyPath, what: &str, value: f64) -> Check {
-    SPREAD.check(path, what, value)
-}
 
 /// That an inline polygon has corners to make rings of.
 pub(crate) fn enough_corners(path: &KeyPath, polygon: &PolygonKeys) -> Check {
@@ -102,7 +47,8 @@ impl Scene {
     /// The first fault found.
     pub fn validate(&self) -> Check {
         let gravity = self.gravity;
-        finite_pair(KeyPath::top("gravity"), "gravity", [gravity.x, gravity.y])?;
+        self.validate_counts()?;
+        ACCELERATION.check_pair(KeyPath::top("gravity"), "gravity", [gravity.x, gravity.y])?;
         self.validate_materials()?;
         self.validate_bodies()?;
         self.validate_resolution()?;
@@ -120,23 +66,37 @@ impl Scene {
         self.validate_cracks()
     }
 
+    /// That there are not too many of anything.
+    fn validate_counts(&self) -> Check {
+        let arrays = [
+            ("material", self.materials.len()),
+            ("body", self.bodies.len()),
+            ("crack", self.cracks.len()),
+            ("toughness", self.toughness.len()),
+            ("collider", self.colliders.len()),
+            ("load", self.loads.len()),
+            ("support", self.supports.len()),
+        ];
+        arrays.into_iter().try_for_each(|(key, count)| ITEMS.check(&KeyPath::top(key), &format!("`{key}`"), count))
+    }
+
     fn validate_materials(&self) -> Check {
         for (i, m) in self.materials.iter().enumerate() {
             let path = KeyPath::item("material", i);
             let check = |key: &str, words: &str, range: Range, value: f64| {
                 range.check(path.then(key), &format!("{words} of material `{}`", m.name), value)
             };
-            check("young_modulus", "Young's modulus", POSITIVE, m.young_modulus)?;
-            check("poisson_ratio", "Poisson's ratio", POISSON, m.poisson_ratio)?;
-            check("density", "density", POSITIVE, m.density)?;
-            check("fracture_toughness", "fracture toughness", POSITIVE, m.fracture_toughness)?;
+            check("young_modulus", "Young's modulus", YOUNG_MODULUS, m.young_modulus)?;
+            check("poisson_ratio", "Poisson's ratio", POISSON_RATIO, m.poisson_ratio)?;
+            check("density", "density", DENSITY, m.density)?;
+            check("fracture_toughness", "fracture toughness", FRACTURE_TOUGHNESS, m.fracture_toughness)?;
             if let Some(speed) = m.limiting_speed {
-                check("limiting_speed", "the highest crack speed", POSITIVE, speed)?;
+                check("limiting_speed", "the highest crack speed", CRACK_SPEED, speed)?;
             }
             if let Some(p) = m.plasticity {
-                check("plasticity", "critical compression", BELOW_ONE, p.critical_compression)?;
-                check("plasticity", "critical stretch", POSITIVE, p.critical_stretch)?;
-                check("plasticity", "hardening", NOT_NEGATIVE, p.hardening)?;
+                check("plasticity", "critical compression", CRITICAL_COMPRESSION, p.critical_compression)?;
+                check("plasticity", "critical stretch", CRITICAL_STRETCH, p.critical_stretch)?;
+                check("plasticity", "hardening", HARDENING, p.hardening)?;
             }
         }
         Ok(())
@@ -156,12 +116,14 @@ impl Scene {
             }
             validate_region(&path.then("shape"), &format!("the outline of body `{}`", body.name), &body.region)?;
             let part = |(k, inclusion)| self.validate_inclusion(&path.then("inclusions").then(k), inclusion, body);
+            ITEMS.check(&path, &format!("body `{}` with its parts", body.name), body.inclusions.len())?;
             body.inclusions.iter().enumerate().try_for_each(part)?;
+            ITEMS.check(&path, &format!("body `{}` with its velocities", body.name), body.velocities.len())?;
             for v in &body.velocities {
                 let what = format!("the initial velocity of body `{}`", body.name);
-                finite_pair(path.then("velocity"), &what, [v.velocity.x, v.velocity.y])?;
-                FINITE.check(path.then("angular_velocity"), &what, v.angular_velocity)?;
-                finite_pair(path.then("center"), &what, [v.center.x, v.center.y])?;
+                VELOCITY.check_pair(path.then("velocity"), &what, [v.velocity.x, v.velocity.y])?;
+                ANGULAR_VELOCITY.check(path.then("angular_velocity"), &what, v.angular_velocity)?;
+                COORDINATE.check_pair(path.then("center"), &what, [v.center.x, v.center.y])?;
                 self.validate_selection(&path, &v.selection)?;
             }
         }

@@ -1,8 +1,12 @@
 //! Loads, supports, selections and colliders.
 
 use super::curve::{Clock, validate_curve};
-use super::{Check, FINITE, FRICTION, POSITIVE, finite_pair, finite_points, validate_region};
+use super::{
+    ANGULAR_VELOCITY, COORDINATE, Check, DEGREES, FORCE, FRICTION, INTERVAL, ITEMS, KEYFRAMES, LENGTH, TIME, TRACTION,
+    VELOCITY, validate_region,
+};
 use crate::fault::{KeyPath, SceneFault};
+use crate::frame::Pose;
 use crate::geometry::Region;
 use crate::scene::*;
 
@@ -11,9 +15,9 @@ impl Scene {
         self.validate_selection(path, &load.selection)?;
         validate_curve(path, &load.curve)?;
         match &load.kind {
-            LoadKind::Force(f) => finite_pair(path.then("force"), "the force", [f.x, f.y]),
+            LoadKind::Force(f) => FORCE.check_pair(path.then("force"), "the force", [f.x, f.y]),
             LoadKind::Traction(t) => {
-                finite_pair(path.then("traction"), "the traction", [t.x, t.y])?;
+                TRACTION.check_pair(path.then("traction"), "the traction", [t.x, t.y])?;
                 if matches!(load.selection, Selection::Edge { .. }) {
                     return Ok(());
                 }
@@ -24,10 +28,14 @@ impl Scene {
                     "add `select = { edge = \"...\" }` or give a `force`",
                 ))
             }
-            LoadKind::PerPoint(forces) => forces.iter().try_for_each(|(at, f)| {
-                finite_pair(path.then("per_point"), "the place of a force", [at.x, at.y])?;
-                finite_pair(path.then("per_point"), "a force", [f.x, f.y])
-            }),
+            LoadKind::PerPoint(forces) => {
+                let path = path.then("per_point");
+                ITEMS.check(&path, "a load", forces.len())?;
+                forces.iter().enumerate().try_for_each(|(i, (at, f))| {
+                    COORDINATE.check_pair(path.then(i).then("at"), "the place of a force", [at.x, at.y])?;
+                    FORCE.check_pair(path.then(i).then("force"), "a force", [f.x, f.y])
+                })
+            }
         }
     }
 
@@ -35,7 +43,7 @@ impl Scene {
         self.validate_selection(path, &support.selection)?;
         validate_curve(path, &support.curve)?;
         for (key, v) in ["velocity_x", "velocity_y"].into_iter().zip(support.velocity) {
-            FINITE.check(path.then(key), "the velocity of a support", v.unwrap_or(0.0))?;
+            VELOCITY.check(path.then(key), "the velocity of a support", v.unwrap_or(0.0))?;
         }
         Ok(())
     }
@@ -54,8 +62,9 @@ impl Scene {
             Selection::Body(body) | Selection::Edge { body: Some(body), .. } => body_exists(*body),
             Selection::Region(region) => validate_region(&path.then("region"), "the selected region", region),
             Selection::Near { points, radius } => {
-                finite_points(&path.then("near"), "a point", points)?;
-                POSITIVE.check(path.then("radius"), "the radius", *radius)
+                ITEMS.check(&path.then("near"), "a selection", points.len())?;
+                COORDINATE.check_points(&path.then("near"), "a point", points)?;
+                LENGTH.check(path.then("radius"), "the radius", *radius)
             }
         }
     }
@@ -72,12 +81,10 @@ pub(super) fn validate_collider(path: &KeyPath, collider: &Collider) -> Check {
                 return Err(SceneFault::new(shape, message, "it must have a length above 0 and be finite"));
             }
         }
-        ColliderShape::Disc { radius } => {
-            POSITIVE.check(shape, &format!("the radius of collider `{name}`"), *radius)?
-        }
+        ColliderShape::Disc { radius } => LENGTH.check(shape, &format!("the radius of collider `{name}`"), *radius)?,
         ColliderShape::Box { half_extents } => {
             for (side, v) in [("width", half_extents.x), ("height", half_extents.y)] {
-                POSITIVE.check(shape.clone(), &format!("half the {side} of collider `{name}`"), v)?;
+                LENGTH.check(shape.clone(), &format!("half the {side} of collider `{name}`"), v)?;
             }
         }
         ColliderShape::Polygon { ring } => {
@@ -89,19 +96,39 @@ pub(super) fn validate_collider(path: &KeyPath, collider: &Collider) -> Check {
     if collider.keyframes.is_empty() {
         return Err(SceneFault::new(path, format!("collider `{name}` has no pose"), "give it one keyframe at least"));
     }
+    KEYFRAMES.check(&path, &format!("collider `{name}`"), collider.keyframes.len())?;
     for (i, (time, pose)) in collider.keyframes.iter().enumerate() {
         let path = path.then(i);
-        FINITE.check(path.then("time"), "the time of a keyframe", *time)?;
-        finite_pair(path.then("position"), "the position of a keyframe", [pose.position.x, pose.position.y])?;
-        FINITE.check(path.then("angle"), "the angle of a keyframe", pose.angle)?;
-        if i > 0 && collider.keyframes[i - 1].0 >= *time {
-            return Err(Clock::Seconds.not_rising(
-                path,
-                &format!("the keyframes of collider `{name}`"),
-                collider.keyframes[i - 1].0,
-                *time,
-            ));
-        }
+        TIME.check(path.then("time"), "the time of a keyframe", *time)?;
+        COORDINATE.check_pair(
+            path.then("position"),
+            "the position of a keyframe",
+            [pose.position.x, pose.position.y],
+        )?;
+        DEGREES.check(path.then("angle"), "the angle of a keyframe", pose.angle.to_degrees())?;
     }
-    Ok(())
+    collider
+        .keyframes
+        .windows(2)
+        .enumerate()
+        .try_for_each(|(i, w)| validate_motion(&path.then(i + 1), name, &w[0], &w[1]))
+}
+
+/// The motion from one keyframe to the next: time goes on, and neither speed is beyond its range.
+fn validate_motion(path: &KeyPath, collider: &str, before: &(f64, Pose), after: &(f64, Pose)) -> Check {
+    let interval = after.0 - before.0;
+    if interval <= 0.0 {
+        let what = format!("the keyframes of collider `{collider}`");
+        return Err(Clock::Seconds.not_rising(path.clone(), &what, before.0, after.0));
+    }
+    INTERVAL.check(path.then("time"), "the time since the keyframe before", interval)?;
+    let velocity = (after.1.position - before.1.position) / interval;
+    let what = format!("the velocity of collider `{collider}` on the way to a keyframe");
+    VELOCITY.check_pair(path.then("position"), &what, [velocity.x, velocity.y])?;
+    let rotation = (after.1.angle - before.1.angle) / interval;
+    ANGULAR_VELOCITY.check(
+        path.then("angle"),
+        &format!("the rotation of collider `{collider}` on the way to a keyframe"),
+        rotation,
+    )
 }

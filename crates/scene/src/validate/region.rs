@@ -1,6 +1,6 @@
 //! Outlines of bodies, colliders and selections.
 
-use super::{Check, finite_points};
+use super::{COORDINATE, CORNERS, Check};
 use crate::fault::{KeyPath, SceneFault, show};
 use crate::geometry::{Point, Region, bounds, orientation, signed_area};
 use crate::outline::find_crossing;
@@ -11,8 +11,9 @@ use i_overlay::float::single::SingleFloatOverlay;
 /// A region is finite, simple, oriented, and its holes lie inside and apart.
 pub(crate) fn validate_region(path: &KeyPath, what: &str, region: &Region) -> Check {
     let fault = |message: String, remedy: &str| Err(SceneFault::new(path.clone(), message, remedy));
+    CORNERS.check(path, what, region.rings().map(<[Point]>::len).sum())?;
     for ring in region.rings() {
-        finite_points(path, what, ring)?;
+        COORDINATE.check_points(path, what, ring)?;
         if ring.windows(3).all(|w| orientation(w[0], w[1], w[2]) == 0.0) {
             return fault(
                 format!("{what} encloses no area ({} different corners)", ring.len()),

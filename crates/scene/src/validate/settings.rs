@@ -1,42 +1,31 @@
 //! Resolution, solver, growth, frames and output.
 
 use super::curve::{Clock, validate_speed};
-use super::{ABOVE_ONE, ACUTE, Check, FRACTION, FRICTION, NOT_NEGATIVE, POSITIVE, UNIT};
+use super::{
+    ACUTE, AREA, BENDING, CELLS, Check, DAMPING, FRACTION, FRAME_RATE, FRAMES, FRICTION, LENGTH, PARTICLE_FRAMES,
+    PARTICLES, RELEASE_RATIO, TIME, TIME_STEP, UNIT,
+};
 use crate::fault::{KeyPath, SceneFault, short};
-use crate::scene::Scene;
+use crate::scene::{Body, Scene};
 use crate::settings::Branching;
 
 /// Most particles along the larger side of a body: beyond it a spacing is a slip of the pen.
 const MOST_ALONG_A_SIDE: f64 = 1e5;
+/// Most particle spacings along the larger side of the box around all bodies: places on the particle lattice are counted by integers of 32 bits.
+const MOST_ALONG_THE_SCENE: f64 = 1e9;
+/// Steps of single precision that a particle spacing must have: with fewer, the rounding of a mesh would be seen.
+const LEAST_STEPS_PER_SPACING: f64 = 16.0;
 
 impl Scene {
     pub(super) fn validate_resolution(&self) -> Check {
         let path = KeyPath::setting("grid", "particle_spacing");
-        POSITIVE.check(path.clone(), "the particle spacing", self.particle_spacing)?;
-        POSITIVE.check(KeyPath::setting("grid", "cell_size"), "the cell size", self.cell_size)?;
-        for body in &self.bodies {
-            let (low, high) = body.region.bounds();
-            let (width, height) = (high.x - low.x, high.y - low.y);
-            let (spacing, name) = (self.particle_spacing, &body.name);
-            let size = format!("body `{name}` ({} m x {} m)", short(width), short(height));
-            if spacing > width.min(height) {
-                return Err(SceneFault::new(
-                    path,
-                    format!("the particle spacing {} m is larger than {size}", short(spacing)),
-                    format!("make it at most {} m", short(width.min(height) / 4.0)),
-                ));
-            }
-            if width.max(height) / spacing > MOST_ALONG_A_SIDE {
-                return Err(SceneFault::new(
-                    path,
-                    format!(
-                        "the particle spacing {} m puts more than {MOST_ALONG_A_SIDE} particles along {size}",
-                        short(spacing)
-                    ),
-                    format!("something like {} m is usual", short(width.max(height) / 128.0)),
-                ));
-            }
+        LENGTH.check(path.clone(), "the particle spacing", self.particle_spacing)?;
+        LENGTH.check(KeyPath::setting("grid", "cell_size"), "the cell size", self.cell_size)?;
+        for (i, body) in self.bodies.iter().enumerate() {
+            self.validate_body_resolution(&path, body)?;
+            self.validate_precision(&KeyPath::item("body", i).then("shape"), body)?;
         }
+        self.validate_particle_count(&path)?;
         if self.cell_size < self.particle_spacing {
             return Err(SceneFault::new(
                 KeyPath::setting("grid", "cell_size"),
@@ -51,23 +40,100 @@ impl Scene {
         Ok(())
     }
 
+    /// A body has particles, and not too many along a side.
+    fn validate_body_resolution(&self, path: &KeyPath, body: &Body) -> Check {
+        let (low, high) = body.region.bounds();
+        let (width, height) = (high.x - low.x, high.y - low.y);
+        let (spacing, name) = (self.particle_spacing, &body.name);
+        let size = format!("body `{name}` ({} m x {} m)", short(width), short(height));
+        if spacing > width.min(height) {
+            return Err(SceneFault::new(
+                path.clone(),
+                format!("the particle spacing {} m is larger than {size}", short(spacing)),
+                format!("make it at most {} m", short(width.min(height) / 4.0)),
+            ));
+        }
+        if width.max(height) / spacing > MOST_ALONG_A_SIDE {
+            return Err(SceneFault::new(
+                path.clone(),
+                format!(
+                    "the particle spacing {} m puts more than {MOST_ALONG_A_SIDE} particles along {size}",
+                    short(spacing)
+                ),
+                format!("something like {} m is usual", short(width.max(height) / 128.0)),
+            ));
+        }
+        Ok(())
+    }
+
+    /// Meshes are written in single precision: where a body lies, its steps must be fine against the particle spacing.
+    fn validate_precision(&self, path: &KeyPath, body: &Body) -> Check {
+        let (low, high) = body.region.bounds();
+        let reach = low.coords.amax().max(high.coords.amax());
+        let step = reach * f64::from(f32::EPSILON);
+        if step * LEAST_STEPS_PER_SPACING <= self.particle_spacing {
+            return Ok(());
+        }
+        let (name, spacing) = (&body.name, short(self.particle_spacing));
+        Err(SceneFault::new(
+            path.clone(),
+            format!(
+                "body `{name}` reaches {} m away from the origin, where single precision, in which meshes are written, has steps of \
+                 {} m; its particle spacing is {spacing} m",
+                short(reach),
+                short(step)
+            ),
+            format!(
+                "move the scene to the origin (take the offset from all coordinates, or choose another `drawing.origin`), or make \
+                 `grid.particle_spacing` at least {} m",
+                short(step * LEAST_STEPS_PER_SPACING)
+            ),
+        ))
+    }
+
+    /// Particles of all bodies, by area.
+    fn expected_particles(&self) -> f64 {
+        self.bodies.iter().map(|b| b.region.area()).sum::<f64>() / (self.particle_spacing * self.particle_spacing)
+    }
+
+    /// The particles of all bodies can be counted, and their places too.
+    fn validate_particle_count(&self, path: &KeyPath) -> Check {
+        let spacing = self.particle_spacing;
+        PARTICLES.check_real(path, "the scene", self.expected_particles())?;
+        let boxes = self.bodies.iter().map(|b| b.region.bounds());
+        let Some((low, high)) = boxes.reduce(|(a, b), (c, d)| (a.inf(&c), b.sup(&d))) else { return Ok(()) };
+        let side = (high - low).amax();
+        if side / spacing <= MOST_ALONG_THE_SCENE {
+            return Ok(());
+        }
+        Err(SceneFault::new(
+            path.clone(),
+            format!(
+                "the bodies lie within {} m, which is more than {MOST_ALONG_THE_SCENE} times the particle spacing {} m",
+                short(side),
+                short(spacing)
+            ),
+            "move the bodies nearer to each other, or make the spacing larger",
+        ))
+    }
+
     pub(super) fn validate_settings(&self) -> Check {
         let (s, g, f, o) = (&self.solver, &self.growth, &self.frames, &self.output);
         let solver = |key: &str| KeyPath::setting("solver", key);
         if let Some(step) = s.time_step {
-            POSITIVE.check(solver("time_step"), "the time step", step)?;
+            TIME_STEP.check(solver("time_step"), "the time step", step)?;
         }
         FRACTION.check(solver("courant"), "`courant`", s.courant)?;
-        NOT_NEGATIVE.check(solver("damping"), "`damping`", s.damping)?;
+        DAMPING.check(solver("damping"), "`damping`", s.damping)?;
         FRICTION.check(solver("crack_friction"), "`crack_friction`", s.crack_friction)?;
         if let Some(radius) = s.j_radius {
-            POSITIVE.check(solver("j_radius"), "`j_radius`", radius)?;
+            CELLS.check(solver("j_radius"), "`j_radius`", radius)?;
         }
         if let crate::settings::Transfer::Flip(flip) = s.transfer {
             UNIT.check(solver("transfer"), "the FLIP share", flip)?;
         }
         let frames = |key: &str| KeyPath::setting("frames", key);
-        POSITIVE.check(frames("rate"), "the frame rate", f.rate)?;
+        FRAME_RATE.check(frames("rate"), "the frame rate", f.rate)?;
         if f.first < 0 {
             let message = format!("the first frame is {}", f.first);
             return Err(SceneFault::new(frames("first"), message, "frame numbers start at 0 or above"));
@@ -76,26 +142,26 @@ impl Scene {
             let message = format!("the last frame {} comes before the first frame {}", f.last, f.first);
             return Err(SceneFault::new(frames("last"), message, "make `last` at least `first`"));
         }
+        let count = f.last as f64 - f.first as f64 + 1.0;
+        FRAMES.check_real(&frames("last"), "the scene", count)?;
+        PARTICLE_FRAMES.check_real(&frames("last"), "the scene", self.expected_particles() * count)?;
+        TIME.check(frames("last"), "the time of the last frame", f.time(f.last))?;
         let growth = |key: &str| KeyPath::setting("growth", key);
-        POSITIVE.check(growth("increment"), "`increment`", g.increment)?;
-        NOT_NEGATIVE.check(growth("bending"), "`bending`", g.bending)?;
+        CELLS.check(growth("increment"), "`increment`", g.increment)?;
+        BENDING.check(growth("bending"), "`bending`", g.bending)?;
         FRACTION.check(growth("speed_limit"), "`speed_limit`", g.speed_limit)?;
         validate_speed(&growth("speed_keyframes"), g.speed_limit, Clock::Seconds, &g.speed_curve.points)?;
         if let Some(branching) = &g.branching {
             validate_branching(&growth("branching"), branching)?;
         }
-        POSITIVE.check(KeyPath::setting("output", "thickness"), "the thickness", o.thickness)?;
-        NOT_NEGATIVE.check(
-            KeyPath::setting("output", "smallest_fragment"),
-            "the smallest fragment",
-            o.smallest_fragment,
-        )
+        LENGTH.check(KeyPath::setting("output", "thickness"), "the thickness", o.thickness)?;
+        AREA.check(KeyPath::setting("output", "smallest_fragment"), "the smallest fragment", o.smallest_fragment)
     }
 }
 
 /// Division of tips.
 fn validate_branching(path: &KeyPath, branching: &Branching) -> Check {
-    ABOVE_ONE.check(path.then("release_ratio"), "`release_ratio`", branching.release_ratio)?;
+    RELEASE_RATIO.check(path.then("release_ratio"), "`release_ratio`", branching.release_ratio)?;
     ACUTE.check(path.then("half_angle"), "`half_angle`", short(branching.half_angle.to_degrees()))?;
-    POSITIVE.check(path.then("spacing"), "`spacing`", branching.spacing)
+    LENGTH.check(path.then("spacing"), "`spacing`", branching.spacing)
 }

@@ -1,7 +1,7 @@
 //! Parts of other materials and patches of toughness.
 
 use super::region::overlap;
-use super::{Check, POSITIVE, finite_pair, validate_region};
+use super::{COORDINATE, Check, TOUGHNESS_FACTOR, validate_region};
 use crate::fault::{KeyPath, SceneFault};
 use crate::geometry::Point;
 use crate::scene::{Body, Inclusion, Scene};
@@ -30,7 +30,7 @@ impl Scene {
         }
         match &patch.kind {
             ToughnessKind::Region { region, factor } => {
-                POSITIVE.check(path.then("factor"), "the factor on the toughness", *factor)?;
+                TOUGHNESS_FACTOR.check(path.then("factor"), "the factor on the toughness", *factor)?;
                 validate_region(&path.then("shape"), "the outline of the toughness", region)
             }
             ToughnessKind::Image(image) => validate_image(path, image),
@@ -46,13 +46,13 @@ fn validate_image(path: &KeyPath, image: &ToughnessImage) -> Check {
         let message = format!("{} factors are given for {columns} x {rows} pixels", image.factors.len());
         return Err(SceneFault::new(path, message, "give one factor for each pixel, and at least one pixel"));
     }
-    image.factors.iter().try_for_each(|&f| POSITIVE.check(path.clone(), "a factor on the toughness", f))
+    image.factors.iter().try_for_each(|&f| TOUGHNESS_FACTOR.check(path.clone(), "a factor on the toughness", f))
 }
 
 /// The rectangle of an image.
 pub(crate) fn validate_corners(path: &KeyPath, min: Point, max: Point) -> Check {
-    finite_pair(path.then("min"), "`min`", [min.x, min.y])?;
-    finite_pair(path.then("max"), "`max`", [max.x, max.y])?;
+    COORDINATE.check_pair(path.then("min"), "`min`", [min.x, min.y])?;
+    COORDINATE.check_pair(path.then("max"), "`max`", [max.x, max.y])?;
     if min.x < max.x && min.y < max.y {
         return Ok(());
     }

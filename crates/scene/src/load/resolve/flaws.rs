@@ -6,7 +6,7 @@ use crate::fault::{KeyPath, SceneFault, short};
 use crate::geometry::{Point, Region};
 use crate::load::scatter::{Flaws, scatter};
 use crate::scene::{Crack, Scene};
-use crate::validate::{finite, not_negative, outside, overlap, positive, spread};
+use crate::validate::{DEGREES, DEGREES_APART, FLAW_DENSITY, ITEMS, LENGTH, SPREAD, outside, overlap};
 
 /// Least distance of flaws from everything else, in cells, unless the scene says otherwise: what a tip needs around it to be measured.
 const MARGIN: f64 = 2.0;
@@ -34,6 +34,7 @@ impl<'d> Resolver<'d> {
             }
             let mut flaws = parameters(&path, keys, area, scene.cell_size)?;
             flaws.stream = i as u64;
+            ITEMS.check(&path, "the scene, with its cracks and these flaws,", scene.cracks.len() + flaws.count)?;
             let lines: Vec<&[Point]> = scene.cracks.iter().map(|c| c.points.as_slice()).collect();
             let placed = scatter(&flaws, &regions, shape.as_deref(), &lines);
             if placed.len() < flaws.count {
@@ -58,17 +59,17 @@ impl<'d> Resolver<'d> {
 }
 
 fn parameters(path: &KeyPath, keys: &FlawsKeys, area: f64, cell_size: f64) -> Resolved<Flaws> {
-    positive(path.then("length"), "the length of the flaws", keys.length)?;
-    spread(path.then("length_spread"), "the spread of their lengths", keys.length_spread)?;
+    LENGTH.check(path.then("length"), "the length of the flaws", keys.length)?;
+    SPREAD.check(path.then("length_spread"), "the spread of their lengths", keys.length_spread)?;
     let margin = keys.margin.unwrap_or(MARGIN * cell_size);
-    positive(path.then("margin"), "the margin of the flaws", margin)?;
+    LENGTH.check(path.then("margin"), "the margin of the flaws", margin)?;
     let all_directions = if keys.angle.is_none() { 90.0 } else { 0.0 };
     let (angle, angle_spread) = (keys.angle.unwrap_or(0.0), keys.angle_spread.unwrap_or(all_directions));
-    finite(path.then("angle"), "the direction of the flaws", angle)?;
-    not_negative(path.then("angle_spread"), "the spread of their directions", angle_spread)?;
+    DEGREES.check(path.then("angle"), "the direction of the flaws", angle)?;
+    DEGREES_APART.check(path.then("angle_spread"), "the spread of their directions", angle_spread)?;
     let (key, count) = match (keys.density, keys.count) {
         (Some(density), None) => {
-            not_negative(path.then("density"), "the density of the flaws", density)?;
+            FLAW_DENSITY.check(path.then("density"), "the density of the flaws", density)?;
             let count = (density * area).round();
             if density > 0.0 && count == 0.0 {
                 let message = format!("a density of {density} per m² gives no flaw on {} m²", short(area));

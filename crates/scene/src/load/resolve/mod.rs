@@ -16,7 +16,7 @@ use crate::document::Document;
 use crate::fault::{KeyPath, SceneFault, Warning};
 use crate::geometry::Vector;
 use crate::scene::Scene;
-use crate::validate::positive;
+use crate::validate::{ITEMS, LENGTH};
 use std::cell::RefCell;
 
 pub(crate) use origin::Origin;
@@ -56,7 +56,8 @@ impl<'d> Resolver<'d> {
         pictures: &'d [Option<Picture>],
         default_name: String,
     ) -> Self {
-        let origin = Origin { drawn_cracks: document.crack.len(), ..Origin::default() };
+        let (drawn_cracks, frames_by_range) = (document.crack.len(), document.frames.range.is_some());
+        let origin = Origin { drawn_cracks, frames_by_range, ..Origin::default() };
         Self { document, drawing, pictures, default_name, origin, warnings: RefCell::default() }
     }
 
@@ -76,11 +77,16 @@ impl<'d> Resolver<'d> {
         if document.body.is_empty() {
             return Err(SceneFault::new(KeyPath::top("body"), "the scene has no body", "add a `[[body]]`"));
         }
+        self.count_items()?;
         let (low, high) = self.bodies_box()?;
         let side = (high.x - low.x).max(high.y - low.y);
+        // A body without extent is told of by the check of its outline.
+        if side > 0.0 {
+            LENGTH.check(KeyPath::top("body"), "the larger side of the box around all bodies", side)?;
+        }
         let particle_spacing = document.grid.particle_spacing.unwrap_or(side / DEFAULT_RESOLUTION);
         if document.grid.particle_spacing.is_some() {
-            positive(KeyPath::setting("grid", "particle_spacing"), "the particle spacing", particle_spacing)?;
+            LENGTH.check(KeyPath::setting("grid", "particle_spacing"), "the particle spacing", particle_spacing)?;
         }
         // A spacing larger than the bodies is reported by the validation; the shapes must not depend on it until then.
         let tolerance = FLATTENING * particle_spacing.min(side / 16.0);
@@ -120,5 +126,24 @@ impl<'d> Resolver<'d> {
         scene.validate().map_err(|fault| self.origin.in_document(fault))?;
         self.short_cracks(&scene);
         Ok(scene)
+    }
+
+    /// That no array of the document has too many items, before anything is made of them.
+    fn count_items(&self) -> Resolved<()> {
+        let d = self.document;
+        let arrays = [
+            ("material", d.material.len()),
+            ("body", d.body.len()),
+            ("region", d.region.len()),
+            ("toughness", d.toughness.len()),
+            ("crack", d.crack.len()),
+            ("flaws", d.flaws.len()),
+            ("guide", d.guide.len()),
+            ("collider", d.collider.len()),
+            ("load", d.load.len()),
+            ("support", d.support.len()),
+            ("initial_velocity", d.initial_velocity.len()),
+        ];
+        arrays.into_iter().try_for_each(|(key, count)| ITEMS.check(&KeyPath::top(key), &format!("`{key}`"), count))
     }
 }

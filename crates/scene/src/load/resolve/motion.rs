@@ -7,7 +7,7 @@ use crate::fault::{KeyPath, SceneFault};
 use crate::frame::Pose;
 use crate::geometry::{Point, Region, Vector};
 use crate::scene::*;
-use crate::validate::{finite_pair, unit, validate_region};
+use crate::validate::{ANGULAR_VELOCITY, COORDINATE, VELOCITY, unit, validate_region};
 
 impl<'d> Resolver<'d> {
     pub(super) fn colliders(&self, tolerance: f64) -> Resolved<Vec<Collider>> {
@@ -29,11 +29,11 @@ impl<'d> Resolver<'d> {
         };
         let (shape, origin) = match &keys.shape {
             ColliderShapeKeys::HalfPlane(h) => {
-                finite_pair(shape_path.then("half_plane"), "the point of the half-plane", h.point)?;
+                COORDINATE.check_pair(shape_path.then("half_plane"), "the point of the half-plane", h.point)?;
                 (ColliderShape::HalfPlane { normal: unit(Vector::from(h.normal)) }, Point::from(h.point))
             }
             ColliderShapeKeys::Disc(d) => {
-                finite_pair(shape_path.then("disc"), "the centre of the disc", d.center)?;
+                COORDINATE.check_pair(shape_path.then("disc"), "the centre of the disc", d.center)?;
                 (ColliderShape::Disc { radius: d.radius }, Point::from(d.center))
             }
             ColliderShapeKeys::Box(b) => {
@@ -165,9 +165,9 @@ impl<'d> Resolver<'d> {
     pub(super) fn initial_velocities(&self, scene: &mut Scene, tolerance: f64) -> Resolved<()> {
         for (i, keys) in self.document.initial_velocity.iter().enumerate() {
             let path = KeyPath::item("initial_velocity", i);
-            finite_pair(path.then("velocity"), "the initial velocity", keys.velocity)?;
-            finite_pair(path.then("angular_velocity"), "the rotation", [keys.angular_velocity, 0.0])?;
-            finite_pair(path.then("center"), "the centre of rotation", keys.center)?;
+            VELOCITY.check_pair(path.then("velocity"), "the initial velocity", keys.velocity)?;
+            ANGULAR_VELOCITY.check(path.then("angular_velocity"), "the rotation", keys.angular_velocity)?;
+            COORDINATE.check_pair(path.then("center"), "the centre of rotation", keys.center)?;
             let selection = self.selection(&path, &keys.select, scene, tolerance)?;
             let only = match &selection {
                 Selection::Body(body) | Selection::Edge { body: Some(body), .. } => Some(*body),

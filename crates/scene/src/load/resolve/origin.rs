@@ -13,11 +13,18 @@ pub(crate) struct Origin {
     pub(super) toughness: Vec<usize>,
     /// Number of `[[crack]]`; the cracks of the scene after these were scattered.
     pub(super) drawn_cracks: usize,
+    /// Whether the file has `frames.range` instead of `first` and `last`.
+    pub(super) frames_by_range: bool,
 }
 
 impl Origin {
     /// A path that counts items as in the scene, as one that counts them as in the document.
     pub(crate) fn in_file(&self, mut path: KeyPath) -> KeyPath {
+        if self.frames_by_range
+            && [KeyPath::setting("frames", "first"), KeyPath::setting("frames", "last")].contains(&path)
+        {
+            return KeyPath::setting("frames", "range");
+        }
         if let [Key::Name(array), Key::Index(index), ..] = path.0.as_mut_slice() {
             match array.as_str() {
                 "body" => *index = self.bodies.get(*index).copied().unwrap_or(*index),

@@ -1,29 +1,36 @@
 //! Shapes and lines of a scene file as regions and polylines.
 
 use super::{Resolved, Resolver};
-use crate::document::{Line, Shape};
+use crate::document::{CircleKeys, Line, Shape};
 use crate::fault::{KeyPath, SceneFault, show};
 use crate::geometry::{Point, Region, Vector, bounds, polyline_length, signed_area};
 use crate::load::drawing::LoadedDrawing;
 use crate::load::seating::Complaint;
 use crate::outline::{circle_ring, clean_ring, find_crossing, oriented};
-use crate::validate::{enough_corners, finite_pair, finite_points, positive, validate_region};
+use crate::validate::{COORDINATE, LENGTH, POINTS, enough_corners, validate_region};
 
 impl<'d> Resolver<'d> {
     pub(super) fn bodies_box(&self) -> Resolved<(Point, Point)> {
         let mut corners = Vec::new();
         for (i, body) in self.document.body.iter().enumerate() {
+            let path = KeyPath::item("body", i).then("shape");
             let (low, high) = match &body.shape {
-                Shape::Rectangle(r) => (Point::from(r.min), Point::from(r.max)),
+                Shape::Rectangle(r) => rectangle(&path.then("rectangle"), r.min, r.max)?.bounds(),
                 Shape::Circle(c) => {
+                    circle_in_range(&path.then("circle"), c)?;
                     let (center, half) = (Point::from(c.center), Vector::new(c.radius, c.radius));
                     (center - half, center + half)
                 }
-                Shape::Polygon(polygon) => bounds(&points(&polygon.exterior)),
+                Shape::Polygon(polygon) => {
+                    let corners = points(&polygon.exterior);
+                    COORDINATE.check_points(&path.then("polygon"), "a corner of the polygon", &corners)?;
+                    bounds(&corners)
+                }
                 Shape::Svg(id) => {
-                    let path = KeyPath::item("body", i).then("shape").then("svg");
-                    let drawing = self.drawing(&path, id)?;
-                    drawing.bounds(id).map_err(at(&path))?
+                    let path = path.then("svg");
+                    let (low, high) = self.drawing(&path, id)?.bounds(id).map_err(at(&path))?;
+                    COORDINATE.check_points(&path, &format!("the place of `{id}`"), &[low, high])?;
+                    (low, high)
                 }
             };
             corners.extend([low, high]);
@@ -44,8 +51,7 @@ impl<'d> Resolver<'d> {
             Shape::Rectangle(r) => rectangle(&path.then("rectangle"), r.min, r.max).map(|r| vec![r]),
             Shape::Circle(c) => {
                 let path = path.then("circle");
-                finite_pair(path.then("center"), "the centre of the circle", c.center)?;
-                positive(path.then("radius"), "the radius of the circle", c.radius)?;
+                circle_in_range(&path, c)?;
                 Ok(vec![Region {
                     exterior: circle_ring(Point::from(c.center), c.radius, tolerance),
                     holes: Vec::new(),
@@ -88,7 +94,8 @@ impl<'d> Resolver<'d> {
                 self.drawing(&path, id)?.line(id, tolerance).map_err(at(&path))?
             }
         };
-        finite_points(path, "a point of the line", &points)?;
+        POINTS.check(path, "the line", points.len())?;
+        COORDINATE.check_points(path, "a point of the line", &points)?;
         if points.len() < 2 || polyline_length(&points) == 0.0 {
             let message = match points.first() {
                 Some(&p) => format!("the line has zero length, it lies at {} m", show(p)),
@@ -113,14 +120,19 @@ pub(super) fn points(list: &[[f64; 2]]) -> Vec<Point> {
 }
 
 pub(super) fn rectangle(path: &KeyPath, min: [f64; 2], max: [f64; 2]) -> Resolved<Region> {
-    finite_pair(path.then("min"), "`min`", min)?;
-    finite_pair(path.then("max"), "`max`", max)?;
+    COORDINATE.check_pair(path.then("min"), "`min`", min)?;
+    COORDINATE.check_pair(path.then("max"), "`max`", max)?;
     if min[0] >= max[0] || min[1] >= max[1] {
         let message = format!("min = {min:?} is not below and left of max = {max:?}");
         return Err(SceneFault::new(path.clone(), message, "min is the lower left corner, max the upper right one"));
     }
     let exterior = vec![min, [max[0], min[1]], max, [min[0], max[1]]].into_iter().map(Point::from).collect();
     Ok(Region { exterior, holes: Vec::new() })
+}
+
+fn circle_in_range(path: &KeyPath, circle: &CircleKeys) -> Resolved<()> {
+    COORDINATE.check_pair(path.then("center"), "the centre of the circle", circle.center)?;
+    LENGTH.check(path.then("radius"), "the radius of the circle", circle.radius)
 }
 
 /// Centre of area of a region.

@@ -7,7 +7,7 @@ use crate::geometry::{Point, Vector, bounds};
 use crate::load::picture::Picture;
 use crate::scene::Scene;
 use crate::toughness::{ToughnessImage, ToughnessKind, ToughnessPatch};
-use crate::validate::{outside, overlap, positive, validate_corners};
+use crate::validate::{TOUGHNESS_FACTOR, outside, overlap, validate_corners};
 
 /// Factors that stand for black and white unless the scene says otherwise: a crack needs a 25th of the energy in black.
 const BLACK: f64 = 0.2;
@@ -89,8 +89,8 @@ impl<'d> Resolver<'d> {
                 let (min, max) = (keys.min.map_or(low, Point::from), keys.max.map_or(high, Point::from));
                 validate_corners(path, min, max)?;
                 let (black, white) = (keys.black.unwrap_or(BLACK), keys.white.unwrap_or(WHITE));
-                positive(path.then("black"), "the factor of black", black)?;
-                positive(path.then("white"), "the factor of white", white)?;
+                TOUGHNESS_FACTOR.check(path.then("black"), "the factor of black", black)?;
+                TOUGHNESS_FACTOR.check(path.then("white"), "the factor of white", white)?;
                 let image = painted(picture, [min, max], [black, white], SMALLEST_PIXEL * scene.particle_spacing);
                 Ok(vec![ToughnessKind::Image(image)])
             }
