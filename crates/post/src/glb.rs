@@ -10,14 +10,18 @@ use gltf_json::buffer::Target;
 use gltf_json::material::{PbrBaseColorFactor, PbrMetallicRoughness, StrengthFactor};
 use gltf_json::mesh::{Mode, Primitive, Semantic};
 use gltf_json::validation::{Checked::Valid, USize64};
-use gltf_json::{Accessor, Asset, Buffer, Index, Material, Node, Root, Scene, Value, buffer, serialize};
+use gltf_json::{Accessor, Asset, Buffer, Extras, Index, Material, Node, Root, Scene, Value, buffer, serialize};
+use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// The bytes of a GLB file with `meshes`.
 ///
-/// Attributes: `POSITION`, `NORMAL`, `TEXCOORD_0`, `_VELOCITY` [m/s] and `_PIECE` (fragment number); points have no
-/// normals and texture coordinates. Materials: `outside` and `inside`, those that are used. `asset.extras` says where the
-/// file comes from. No meshes give a valid file with nothing in it.
+/// Attributes: `POSITION`, `NORMAL`, `TEXCOORD_0` and `_VELOCITY` [m/s]; points have no normals and texture coordinates.
+/// What a whole object has in common, its `piece`, is in the extras of its node. Materials: `outside` and `inside`,
+/// those that are used. `asset.extras` says where the file comes from. No meshes give a scene with one node without a mesh.
+///
+/// There is one custom attribute, and no second may be added: Blender 5.0.1 keeps them in a set without an order, takes one
+/// for another from primitive to primitive, and fails where their widths differ.
 ///
 /// # Errors
 /// When the file would be larger than the 4 GiB of the format.
@@ -25,13 +29,19 @@ pub fn to_glb(meshes: &[Mesh], provenance: &Provenance) -> Result<Vec<u8>, GlbEr
     let mut document = Document::default();
     let mut nodes = Vec::new();
     for mesh in meshes {
-        nodes.extend(document.node(mesh));
+        nodes.extend(document.node(mesh)?);
     }
     let Document { mut root, binary, .. } = document;
     root.asset = asset(provenance)?;
-    if !nodes.is_empty() {
-        let scene = Scene { extensions: None, extras: None, name: Some(provenance.scene.clone()), nodes };
-        root.scene = Some(root.push(scene));
+    let has_meshes = !nodes.is_empty();
+    if !has_meshes {
+        // Readers differ in what they make of a file without a scene or of a scene without nodes; three.js and the crate
+        // `gltf` fail. All of them know a node without a mesh.
+        nodes.push(root.push(Node { name: Some("nothing".to_owned()), ..Node::default() }));
+    }
+    let scene = Scene { extensions: None, extras: None, name: Some(provenance.scene.clone()), nodes };
+    root.scene = Some(root.push(scene));
+    if has_meshes {
         let length = USize64::from(binary.len());
         root.push(Buffer { byte_length: length, name: None, uri: None, extensions: None, extras: None });
     }
@@ -49,13 +59,20 @@ pub enum GlbError {
     Json(#[from] gltf_json::Error),
 }
 
+/// What a whole object has in common; importers make it properties of the object.
+#[derive(Serialize)]
+struct ObjectExtras {
+    /// Fragment number of the simulation, or index of the crack or collider.
+    piece: u32,
+}
+
+/// `value` as extras.
+fn extras(value: &impl Serialize) -> Result<Extras, GlbError> {
+    Ok(Some(gltf_json::deserialize::from_str(&serialize::to_string(value)?)?))
+}
+
 fn asset(provenance: &Provenance) -> Result<Asset, GlbError> {
-    let extras = gltf_json::serialize::to_string(provenance)?;
-    Ok(Asset {
-        generator: Some(provenance.tool.clone()),
-        extras: Some(gltf_json::deserialize::from_str(&extras)?),
-        ..Asset::default()
-    })
+    Ok(Asset { generator: Some(provenance.tool.clone()), extras: extras(provenance)?, ..Asset::default() })
 }
 
 /// A document in the making.
@@ -68,10 +85,10 @@ struct Document {
 
 impl Document {
     /// Adds `mesh` with its node; a mesh without vertices adds nothing, the format has no empty meshes.
-    fn node(&mut self, mesh: &Mesh) -> Option<Index<Node>> {
+    fn node(&mut self, mesh: &Mesh) -> Result<Option<Index<Node>>, GlbError> {
         let primitives = self.primitives(mesh);
         if primitives.is_empty() {
-            return None;
+            return Ok(None);
         }
         let mesh_index = self.root.push(gltf_json::Mesh {
             extensions: None,
@@ -80,13 +97,18 @@ impl Document {
             primitives,
             weights: None,
         });
-        Some(self.root.push(Node { mesh: Some(mesh_index), name: Some(mesh.name.clone()), ..Node::default() }))
+        Ok(Some(self.root.push(Node {
+            mesh: Some(mesh_index),
+            name: Some(mesh.name.clone()),
+            extras: extras(&ObjectExtras { piece: mesh.piece })?,
+            ..Node::default()
+        })))
     }
 
     fn primitives(&mut self, mesh: &Mesh) -> Vec<Primitive> {
         if mesh.content == Content::Points {
             let vertices: Vec<_> = mesh.vertices.iter().map(|v| pack(v, UpAxis::Y)).collect();
-            let attributes = self.common_attributes(&vertices, mesh.piece);
+            let attributes = self.common_attributes(&vertices);
             let primitive = Primitive { mode: Valid(Mode::Points), ..primitive(attributes) };
             return if vertices.is_empty() { Vec::new() } else { vec![primitive] };
         }
@@ -96,7 +118,7 @@ impl Document {
 
     fn triangles(&mut self, mesh: &Mesh, slot: Slot) -> Primitive {
         let (vertices, triangles) = compact(mesh, mesh.slot(slot), UpAxis::Y);
-        let mut attributes = self.common_attributes(&vertices, mesh.piece);
+        let mut attributes = self.common_attributes(&vertices);
         let normals = vertices.iter().flat_map(|v| v.normal);
         let normals = self.floats(normals, vertices.len(), Type::Vec3);
         // Texture coordinates of the format count downwards.
@@ -112,7 +134,7 @@ impl Document {
     }
 
     /// Attributes that triangles and points have.
-    fn common_attributes(&mut self, vertices: &[PackedVertex], piece: u32) -> Attributes {
+    fn common_attributes(&mut self, vertices: &[PackedVertex]) -> Attributes {
         let mut attributes = Attributes::new();
         let positions = self.floats(vertices.iter().flat_map(|v| v.position), vertices.len(), Type::Vec3);
         let bound = |pick: fn(f32, f32) -> f32, start: f32| {
@@ -126,9 +148,6 @@ impl Document {
         attributes.insert(Valid(Semantic::Positions), positions);
         let velocity = self.floats(vertices.iter().flat_map(|v| v.velocity), vertices.len(), Type::Vec3);
         attributes.insert(Valid(Semantic::Extras("VELOCITY".to_owned())), velocity);
-        let pieces = vertices.iter().map(|_| piece as f32);
-        let pieces = self.floats(pieces, vertices.len(), Type::Scalar);
-        attributes.insert(Valid(Semantic::Extras("PIECE".to_owned())), pieces);
         attributes
     }
 
