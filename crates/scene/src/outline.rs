@@ -92,51 +92,6 @@ fn meeting_point(e: &Edge, f: &Edge) -> Point {
     e.a + d * ((w.x * g.y - w.y * g.x) / determinant)
 }
 
-/// Which rings of a drawing bound filled area.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum FillRule {
-    /// Filled where the rings turn around a point a number of times other than zero.
-    NonZero,
-    /// Filled where they turn around it an odd number of times.
-    EvenOdd,
-}
-
-/// Sorts rings into regions by what lies inside what. The rings must not touch (see [`find_crossing`]).
-pub(crate) fn nest_rings(rings: &[Vec<Point>], rule: FillRule) -> Vec<Region> {
-    let sign = |ring: &[Point]| if signed_area(ring) > 0.0 { 1_i64 } else { -1 };
-    let filled = |winding: i64| match rule {
-        FillRule::NonZero => winding != 0,
-        FillRule::EvenOdd => winding % 2 != 0,
-    };
-    let simple: Vec<Region> =
-        rings.iter().map(|r| Region { exterior: oriented(r.clone(), true), holes: Vec::new() }).collect();
-    // A ring lies in another as a whole or not at all, so one point decides.
-    let around = |i: usize| (0..rings.len()).filter(move |&j| j != i);
-    let containers: Vec<Vec<usize>> = (0..rings.len())
-        .map(|i| around(i).filter(|&j| rings[i].first().is_some_and(|&p| simple[j].contains(p))).collect())
-        .collect();
-    let mut regions: Vec<(usize, Region)> = Vec::new();
-    let mut holes = Vec::new();
-    for (i, ring) in rings.iter().enumerate() {
-        let outside: i64 = containers[i].iter().map(|&j| sign(&rings[j])).sum();
-        match (filled(outside), filled(outside + sign(ring))) {
-            (false, true) => regions.push((i, simple[i].clone())),
-            (true, false) => holes.push(i),
-            _ => {}
-        }
-    }
-    for hole in holes {
-        let owner = regions
-            .iter_mut()
-            .filter(|(i, _)| containers[hole].contains(i))
-            .min_by(|(i, _), (j, _)| simple[*i].area().total_cmp(&simple[*j].area()));
-        if let Some((_, region)) = owner {
-            region.holes.push(oriented(rings[hole].clone(), false));
-        }
-    }
-    regions.into_iter().map(|(_, region)| region).collect()
-}
-
 /// A place on a ring of a region.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct RingPlace {
@@ -192,7 +147,6 @@ pub(crate) fn circle_ring(center: Point, radius: f64, tolerance: f64) -> Vec<Poi
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use proptest::prelude::*;
 
     fn square(x: f64, y: f64, half: f64) -> Vec<Point> {
         [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
@@ -217,38 +171,5 @@ mod tests {
         let sagitta = 3.0 * (1.0 - (std::f64::consts::PI / ring.len() as f64).cos());
         assert!(sagitta <= 0.01 && sagitta > 0.005, "{sagitta}");
         assert!(signed_area(&ring) > 0.0);
-    }
-
-    proptest! {
-        /// Truth: the fill rule itself. A point is in the nested regions exactly when its winding number says so.
-        #[test]
-        fn nesting_fills_what_the_rule_fills(depths in prop::collection::vec((0_usize..3, any::<bool>()), 1..6),
-                                             even_odd in any::<bool>()) {
-            // Three towers of squares inside squares, each ring turned at random.
-            let mut heights = [0_usize; 3];
-            let mut rings = Vec::new();
-            for (tower, counter_clockwise) in depths {
-                let half = 10.0 - heights[tower] as f64;
-                heights[tower] += 1;
-                rings.push(oriented(square(30.0 * tower as f64, 0.0, half), counter_clockwise));
-            }
-            let rule = if even_odd { FillRule::EvenOdd } else { FillRule::NonZero };
-            let regions = nest_rings(&rings, rule);
-            for region in &regions {
-                prop_assert!(signed_area(&region.exterior) > 0.0);
-                prop_assert!(region.holes.iter().all(|h| signed_area(h) < 0.0));
-            }
-            for tower in 0..3 {
-                for step in 0..12 {
-                    let p = Point::new(30.0 * tower as f64 + 10.5 - step as f64, 0.25);
-                    let winding: i64 = rings.iter().map(|r| {
-                        let inside = Region { exterior: oriented(r.clone(), true), holes: vec![] }.contains(p);
-                        if !inside { 0 } else if signed_area(r) > 0.0 { 1 } else { -1 }
-                    }).sum();
-                    let filled = if even_odd { winding % 2 != 0 } else { winding != 0 };
-                    prop_assert_eq!(regions.iter().filter(|r| r.contains(p)).count(), usize::from(filled));
-                }
-            }
-        }
     }
 }

@@ -88,7 +88,7 @@ pub enum Shape {
     Circle(CircleKeys),
     /// Polygon: its corners `[[x, y], ...]` in m, or `{ exterior = [...], holes = [[...], ...] }`.
     Polygon(PolygonKeys),
-    /// Element of the drawing, by id: a path, a basic shape, a text, or a group of them.
+    /// Element of the drawing, by id or label: a path, a basic shape, a text, or a group of them; "*" is all that is drawn.
     Svg(String),
 }
 
@@ -168,7 +168,7 @@ impl<'de> Deserialize<'de> for PolygonKeys {
 pub enum Line {
     /// Points [m].
     Points(Vec<[f64; 2]>),
-    /// Id of a path, line or polyline of the drawing.
+    /// Id or label of a path, line or polyline of the drawing.
     Svg(String),
 }
 

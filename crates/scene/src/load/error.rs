@@ -97,7 +97,7 @@ pub(crate) struct InputFile {
 /// The scene file. Its text takes some 60 times as much memory once it is parsed.
 pub(crate) const SCENE_FILE: InputFile = InputFile { what: "the scene file", most_bytes: 8 << 20 };
 /// The drawing.
-pub(crate) const DRAWING: InputFile = InputFile { what: "the drawing", most_bytes: 32 << 20 };
+pub(crate) const DRAWING: InputFile = InputFile { what: "the drawing", most_bytes: 16 << 20 };
 /// A font; the largest in use, with the letters of East Asia, have some 30 MiB.
 pub(crate) const FONT: InputFile = InputFile { what: "the font", most_bytes: 128 << 20 };
 /// An image that paints values.

@@ -1,7 +1,7 @@
 //! Scenes in folders of their own.
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used)]
 
-use fissure_scene::{Scene, load};
+use fissure_scene::{Region, Scene, ToughnessKind, ToughnessPatch, load};
 use png::{BitDepth, ColorType};
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -42,4 +42,19 @@ pub fn paint(path: &Path, color: ColorType, depth: BitDepth, columns: usize, sam
     encoder.set_color(color);
     encoder.set_depth(depth);
     encoder.write_header().unwrap().write_image_data(samples).unwrap();
+}
+
+/// The regions of the element `b` of the drawing `svg`, which is 100 m wide, at a particle spacing of 1 m.
+///
+/// They are those of a tougher place in a large plate, which may have parts of any size.
+pub fn regions_of(svg: &str) -> Vec<Region> {
+    let text = "[drawing]\nfile = 'drawing.svg'\nwidth = 100\n[grid]\nparticle_spacing = 1\n\
+                [[body]]\nname = 'plate'\nmaterial = 'pmma'\nshape = { rectangle = { min = [-200, -200], max = [200, 200] } }\n\
+                [[toughness]]\nshape = { svg = 'b' }\nfactor = 2\n";
+    let patches = scene_with(text, Some(svg), &[]).unwrap().toughness;
+    let region = |patch: ToughnessPatch| match patch.kind {
+        ToughnessKind::Region { region, .. } => Some(region),
+        ToughnessKind::Image(_) => None,
+    };
+    patches.into_iter().filter_map(region).collect()
 }

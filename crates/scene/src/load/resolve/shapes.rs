@@ -2,7 +2,7 @@
 
 use super::{Resolved, Resolver};
 use crate::document::{CircleKeys, Line, Shape};
-use crate::fault::{KeyPath, SceneFault, show};
+use crate::fault::{KeyPath, SceneFault, Warning, show};
 use crate::geometry::{Point, Region, Vector, bounds, polyline_length, signed_area};
 use crate::load::drawing::LoadedDrawing;
 use crate::load::seating::Complaint;
@@ -68,7 +68,11 @@ impl<'d> Resolver<'d> {
             }
             Shape::Svg(id) => {
                 let path = path.then("svg");
-                self.drawing(&path, id)?.regions(id, tolerance).map_err(at(&path))
+                let drawing = self.drawing(&path, id)?;
+                for (message, remedy) in drawing.remarks(id) {
+                    self.warn(Warning::new(path.clone(), message, remedy));
+                }
+                drawing.regions(id, tolerance).map_err(at(&path))
             }
         }
     }

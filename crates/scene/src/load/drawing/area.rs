@@ -1,0 +1,181 @@
+//! Areas: what paths fill, on an integer grid, where crossings, unions and intersections are exact.
+
+use super::bridge::bridges;
+use super::flatten::Polyline;
+use super::pinch::part_touching_rings;
+use crate::geometry::{Point, Region, signed_area};
+use i_overlay::core::fill_rule::FillRule as OverlayFill;
+use i_overlay::core::overlay::{IntOverlayOptions, Overlay, ShapeType};
+use i_overlay::core::overlay_rule::OverlayRule;
+use i_overlay::i_float::int::point::IntPoint;
+use i_overlay::string::clip::{ClipRule, IntClip as _};
+
+/// Bits of the grid coordinates of what lies within reach.
+const GRID_BITS: i32 = 40;
+/// Grid coordinates are held below this; what is cut off there lies a million times farther out than the reach.
+const FARTHEST: f64 = (1_u64 << 60) as f64;
+
+/// A place on the grid, in grid steps.
+pub(super) type GridPoint = IntPoint<i64>;
+/// An outer ring (counter-clockwise) and the rings of its holes (clockwise).
+type Shape = Vec<Vec<GridPoint>>;
+
+/// A square grid through the origin whose step is a power of two, so that places on it are exact in `f64`.
+///
+/// Curves of a drawing are known to 24 bits of its size; the grid has 16 more.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Grid {
+    step: f64,
+}
+
+impl Grid {
+    /// The grid for points within `reach` [m] of the origin in x and y.
+    pub(super) fn covering(reach: f64) -> Self {
+        let power = if reach > 0.0 { reach.log2().ceil() as i32 } else { 0 };
+        Self { step: 2.0_f64.powi(power.clamp(-900, 900) - GRID_BITS) }
+    }
+
+    /// The grid point nearest to `point`.
+    pub(super) fn snap(self, point: Point) -> GridPoint {
+        let steps = |x: f64| (x / self.step).round().clamp(-FARTHEST, FARTHEST) as i64;
+        GridPoint::new(steps(point.x), steps(point.y))
+    }
+
+    /// The place of a grid point [m], exact.
+    pub(super) fn place(self, point: GridPoint) -> Point {
+        Point::new(point.x as f64 * self.step, point.y as f64 * self.step)
+    }
+}
+
+/// Which places closed rings fill.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum FillRule {
+    /// Those that the rings turn around a number of times other than zero.
+    NonZero,
+    /// Those that they turn around an odd number of times.
+    EvenOdd,
+}
+
+/// A part of the plane: connected shapes with holes, which do not overlap.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Area(Vec<Shape>);
+
+impl Area {
+    /// What closed `rings` fill.
+    pub(super) fn filled(rings: &[Vec<GridPoint>], rule: FillRule) -> Self {
+        let mut overlay = overlay(rings.iter().map(Vec::len).sum());
+        overlay.add_source(rings, ShapeType::Subject);
+        let rule = match rule {
+            FillRule::NonZero => OverlayFill::NonZero,
+            FillRule::EvenOdd => OverlayFill::EvenOdd,
+        };
+        Self(overlay.overlay(OverlayRule::Subject, rule))
+    }
+
+    /// What any of the areas covers.
+    pub(super) fn union(areas: &[Self]) -> Self {
+        Self::union_with(areas, &[])
+    }
+
+    /// What any of the areas covers, joined where they share an edge but for a gap of at most `gap` [m].
+    ///
+    /// Holes narrower than that, which are what is left of such gaps, are filled.
+    pub(super) fn joined(areas: &[Self], gap: f64, grid: Grid) -> Self {
+        let shapes = areas.iter().map(|area| area.rings().collect());
+        let mut joined = Self::union_with(areas, &bridges(shapes, gap / grid.step));
+        for shape in &mut joined.0 {
+            let mut rings = std::mem::take(shape).into_iter();
+            shape.extend(rings.next());
+            shape.extend(rings.filter(|ring| mean_width(&places(ring, grid)) >= gap));
+        }
+        joined
+    }
+
+    fn union_with(areas: &[Self], strips: &[Vec<GridPoint>]) -> Self {
+        let mut overlay = overlay(areas.iter().flat_map(|a| a.rings()).map(<[_]>::len).sum());
+        areas.iter().for_each(|area| overlay.add_source(&area.0, ShapeType::Subject));
+        overlay.add_source(strips, ShapeType::Subject);
+        Self(overlay.overlay(OverlayRule::Subject, OverlayFill::NonZero))
+    }
+
+    /// What both areas cover.
+    pub(super) fn intersection(&self, other: &Self) -> Self {
+        let mut overlay = overlay(self.rings().chain(other.rings()).map(<[_]>::len).sum());
+        overlay.add_source(&self.0, ShapeType::Subject);
+        overlay.add_source(&other.0, ShapeType::Clip);
+        Self(overlay.overlay(OverlayRule::Intersect, OverlayFill::NonZero))
+    }
+
+    /// Whether it covers nothing.
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The parts of a polyline that lie in the area.
+    pub(super) fn cut_line(&self, (points, closed): Polyline, grid: Grid) -> Vec<Polyline> {
+        let mut line: Vec<GridPoint> = points.iter().map(|&p| grid.snap(p)).collect();
+        if closed {
+            line.push(line[0]);
+        }
+        line.dedup();
+        let rings: Vec<_> = self.0.iter().flatten().cloned().collect();
+        let rule = ClipRule { invert: false, boundary_included: true };
+        let parts = rings.clip_path(&line, OverlayFill::NonZero, rule);
+        if let [part] = parts.as_slice()
+            && (*part == line || part.iter().eq(line.iter().rev()))
+        {
+            return vec![(points, closed)]; // Nothing was cut off.
+        }
+        parts.iter().map(|part| (places(part, grid), false)).collect()
+    }
+
+    /// All rings.
+    pub(super) fn rings(&self) -> impl Iterator<Item = &[GridPoint]> {
+        self.0.iter().flatten().map(Vec::as_slice)
+    }
+
+    /// The connected parts as regions, from left to right, without those narrower than `width` [m] on average.
+    ///
+    /// Rings of a region do not touch: where they meet in a point they are parted by a notch of at most `notch` [m].
+    pub(super) fn regions(&self, grid: Grid, width: f64, notch: f64) -> Vec<Region> {
+        let mut shapes: Vec<Vec<Vec<Point>>> = self
+            .0
+            .iter()
+            .map(|shape| shape.iter().map(|ring| places(ring, grid)).collect::<Vec<_>>())
+            .filter(|shape| shape.first().is_some_and(|exterior| mean_width(exterior) >= width))
+            .collect();
+        part_touching_rings(&mut shapes, notch);
+        let mut regions: Vec<Region> = shapes
+            .into_iter()
+            .filter_map(|shape| {
+                let mut rings = shape.into_iter();
+                let exterior = rings.next()?;
+                Some(Region { exterior, holes: rings.filter(|hole| mean_width(hole) >= width).collect() })
+            })
+            .collect();
+        let corner = |region: &Region| region.bounds().0;
+        regions.sort_by(|a, b| {
+            let (a, b) = (corner(a), corner(b));
+            a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
+        });
+        regions
+    }
+}
+
+/// An overlay whose shapes have connected interiors: what hangs together in a point only is apart.
+///
+/// Corners on straight edges stay, since another ring may touch there.
+fn overlay(capacity: usize) -> Overlay<i64> {
+    let options = IntOverlayOptions { preserve_output_collinear: true, ..IntOverlayOptions::ogc() };
+    Overlay::new_custom(capacity, options, Default::default())
+}
+
+fn places(ring: &[GridPoint], grid: Grid) -> Vec<Point> {
+    ring.iter().map(|&p| grid.place(p)).collect()
+}
+
+/// Width of a long thin ring: twice its area over its length.
+fn mean_width(ring: &[Point]) -> f64 {
+    let length: f64 = (0..ring.len()).map(|i| (ring[(i + 1) % ring.len()] - ring[i]).norm()).sum();
+    2.0 * signed_area(ring).abs() / length
+}

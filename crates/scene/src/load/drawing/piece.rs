@@ -1,0 +1,177 @@
+//! The paths of an element, with all that decides which area they cover.
+
+use super::area::{Area, FillRule, Grid, GridPoint};
+use super::flatten::{Budget, Polyline, flatten};
+use super::stroke::stroke_outline;
+use crate::load::seating::Complaint;
+use kurbo::{Affine, BezPath, PathEl, Rect};
+
+/// A path with its map to metres and the clips that are on it.
+#[derive(Clone)]
+pub(super) struct Piece<'t> {
+    path: &'t usvg::Path,
+    around: Surroundings<'t>,
+}
+
+/// What the groups around a node do to it.
+#[derive(Clone)]
+pub(super) struct Surroundings<'t> {
+    /// From the units inside to metres.
+    to_metres: Affine,
+    /// The clips, each with the map from the units of its user to metres.
+    clips: Vec<(&'t usvg::ClipPath, Affine)>,
+    /// Whether a group is wholly transparent.
+    transparent: bool,
+}
+
+impl<'t> Surroundings<'t> {
+    /// Of the outermost nodes of a drawing.
+    pub(super) fn outermost(to_metres: Affine) -> Self {
+        Self { to_metres, clips: Vec::new(), transparent: false }
+    }
+
+    /// Inside of `group`, which is in these surroundings.
+    fn inside(&self, group: &'t usvg::Group) -> Self {
+        let mut inside = self.clone();
+        inside.to_metres *= affine(group.transform());
+        inside.clips.extend(group.clip_path().map(|clip| (clip, inside.to_metres)));
+        inside.transparent |= group.opacity().get() == 0.0;
+        inside
+    }
+}
+
+/// Collects the paths of the elements called `id` below `group`, all there are without an id.
+pub(super) fn collect_pieces<'t>(
+    group: &'t usvg::Group,
+    id: Option<&str>,
+    around: &Surroundings<'t>,
+    pieces: &mut Vec<Piece<'t>>,
+) {
+    for node in group.children() {
+        let wanted = id.filter(|id| *id != node.id());
+        match node {
+            usvg::Node::Group(group) => collect_pieces(group, wanted, &around.inside(group), pieces),
+            usvg::Node::Text(text) => {
+                collect_pieces(text.flattened(), wanted, &around.inside(text.flattened()), pieces);
+            }
+            usvg::Node::Path(path) if wanted.is_none() => pieces.push(Piece { path, around: around.clone() }),
+            usvg::Node::Path(_) | usvg::Node::Image(_) => {}
+        }
+    }
+}
+
+impl Piece<'_> {
+    /// Whether anything of it can be seen.
+    pub(super) fn is_painted(&self) -> bool {
+        self.path.is_visible() && !self.around.transparent && (self.fill().is_some() || self.pen().is_some())
+    }
+
+    /// The rule of its fill, if it is filled.
+    fn fill(&self) -> Option<FillRule> {
+        let fill = self.path.fill().filter(|fill| fill.opacity().get() > 0.0)?;
+        Some(match fill.rule() {
+            usvg::FillRule::EvenOdd => FillRule::EvenOdd,
+            usvg::FillRule::NonZero => FillRule::NonZero,
+        })
+    }
+
+    /// Its stroke, if it has one.
+    fn pen(&self) -> Option<&usvg::Stroke> {
+        self.path.stroke().filter(|stroke| stroke.opacity().get() > 0.0)
+    }
+
+    /// A rectangle around its path and its stroke [m]; not finite when the path or its map is not.
+    pub(super) fn reach(&self) -> Rect {
+        let to_metres = self.around.to_metres;
+        let pen = self.pen().filter(|_| self.fill().is_none()).map_or(0.0, |pen| {
+            let corner = f64::from(pen.miterlimit().get()).max(std::f64::consts::SQRT_2);
+            0.5 * f64::from(pen.width().get()) * corner
+        });
+        to_metres.transform_rect_bbox(bezier(self.path.data()).control_box().inflate(pen, pen))
+    }
+
+    /// The area that it covers: of its fill, or of its stroke when its fill covers nothing; within its clips.
+    pub(super) fn area(&self, grid: Grid, tolerance: f64, budget: &mut Budget) -> Result<Area, Complaint> {
+        let path = bezier(self.path.data());
+        let mut area = Area::default();
+        if let Some(rule) = self.fill() {
+            area = fill(&(self.around.to_metres * &path), rule, grid, tolerance, budget)?;
+        }
+        if let (Some(pen), true) = (self.pen(), area.is_empty()) {
+            let outline = stroke_outline(&path, pen, tolerance / most_stretch(self.around.to_metres))?;
+            area = fill(&(self.around.to_metres * &outline), FillRule::NonZero, grid, tolerance, budget)?;
+        }
+        for &(clip, to_metres) in &self.around.clips {
+            area = area.intersection(&clip_area(clip, to_metres, grid, tolerance, budget)?);
+        }
+        Ok(area)
+    }
+
+    /// The polylines that it draws [m], each with whether it is closed; outside of its clips they are cut off.
+    pub(super) fn polylines(&self, tolerance: f64, budget: &mut Budget) -> Result<Vec<Polyline>, Complaint> {
+        let mut lines = flatten(&(self.around.to_metres * bezier(self.path.data())), tolerance, budget)?;
+        if self.around.clips.is_empty() {
+            return Ok(lines);
+        }
+        let reach = self.reach();
+        let grid =
+            Grid::covering([reach.x0, reach.y0, reach.x1, reach.y1].into_iter().fold(0.0, |r, x| x.abs().max(r)));
+        for &(clip, to_metres) in &self.around.clips {
+            let area = clip_area(clip, to_metres, grid, tolerance, budget)?;
+            lines = lines.into_iter().flat_map(|line| area.cut_line(line, grid)).collect();
+        }
+        Ok(lines)
+    }
+}
+
+/// The area that a clip leaves: what its shapes fill by their clip rules, within the clips that are on them and on it.
+fn clip_area(
+    clip: &usvg::ClipPath,
+    to_metres: Affine,
+    grid: Grid,
+    tolerance: f64,
+    budget: &mut Budget,
+) -> Result<Area, Complaint> {
+    let inside = Surroundings::outermost(to_metres * affine(clip.transform()));
+    let mut pieces = Vec::new();
+    collect_pieces(clip.root(), None, &inside, &mut pieces);
+    let shapes = pieces.iter().map(|piece| piece.area(grid, tolerance, budget)).collect::<Result<Vec<_>, _>>()?;
+    let area = Area::union(&shapes);
+    match clip.clip_path() {
+        Some(outer) => Ok(area.intersection(&clip_area(outer, to_metres, grid, tolerance, budget)?)),
+        None => Ok(area),
+    }
+}
+
+/// What a path in metres fills; open subpaths are closed by a straight line, as SVG does.
+fn fill(path: &BezPath, rule: FillRule, grid: Grid, tolerance: f64, budget: &mut Budget) -> Result<Area, Complaint> {
+    let lines = flatten(path, tolerance, budget)?;
+    let rings: Vec<Vec<GridPoint>> =
+        lines.into_iter().map(|(points, _)| points.into_iter().map(|p| grid.snap(p)).collect()).collect();
+    budget.spend_crossings(&rings)?;
+    Ok(Area::filled(&rings, rule))
+}
+
+/// A bound on the factor by which a map stretches lengths.
+fn most_stretch(map: Affine) -> f64 {
+    let [a, b, c, d, ..] = map.as_coeffs();
+    (a * a + b * b + c * c + d * d).sqrt()
+}
+
+fn affine(t: usvg::Transform) -> Affine {
+    Affine::new([t.sx, t.ky, t.kx, t.sy, t.tx, t.ty].map(f64::from))
+}
+
+fn bezier(data: &usvg::tiny_skia_path::Path) -> BezPath {
+    use usvg::tiny_skia_path::PathSegment;
+    let point = |p: usvg::tiny_skia_path::Point| kurbo::Point::new(p.x.into(), p.y.into());
+    data.segments()
+        .map(|segment| match segment {
+            PathSegment::MoveTo(p) => PathEl::MoveTo(point(p)),
+            PathSegment::LineTo(p) => PathEl::LineTo(point(p)),
+            PathSegment::QuadTo(p, q) => PathEl::QuadTo(point(p), point(q)),
+            PathSegment::CubicTo(p, q, r) => PathEl::CurveTo(point(p), point(q), point(r)),
+            PathSegment::Close => PathEl::ClosePath,
+        })
+        .collect()
+}
