@@ -34,6 +34,17 @@ pub enum SimulationError {
         /// Memory available [MiB].
         available: u64,
     },
+    /// Bodies reach too far for their particles and nodes to be counted.
+    #[error(
+        "the bodies reach over {width} m, too many cells of {cell_size} m to count; move them closer together or make \
+         `grid.particle_spacing` larger"
+    )]
+    TooWide {
+        /// Larger side of the box around all bodies [m].
+        width: f64,
+        /// Distance between nodes [m].
+        cell_size: f64,
+    },
     /// A selection meets no particle.
     #[error("{what} selects no particle; check its shape against the bodies")]
     EmptySelection {

@@ -8,6 +8,7 @@ use crate::solver::{Handover, Solver};
 use crate::total::Total;
 use crate::updated::Updated;
 use fissure_scene::{Formulation, Kernel, LoadKind, Scene, bounds, updated_kernel};
+use std::sync::Arc;
 
 /// A formulation and the reason for it.
 #[derive(Debug, Clone, PartialEq)]
@@ -107,7 +108,7 @@ fn expected_strain(scene: &Scene, elastic: &[Elastic]) -> f64 {
 pub(crate) fn build(
     formulation: Formulation,
     scene: &Scene,
-    particles: Particles,
+    particles: Arc<Particles>,
     cracks: &[Crack],
 ) -> Result<Box<dyn Solver>, SimulationError> {
     Ok(match formulation {
@@ -122,7 +123,7 @@ pub(crate) fn build(
 /// As [`build`].
 pub(crate) fn switch(
     scene: &Scene,
-    particles: Particles,
+    particles: Arc<Particles>,
     cracks: &[Crack],
     handover: Handover,
 ) -> Result<Box<dyn Solver>, SimulationError> {
@@ -136,7 +137,7 @@ pub(crate) fn switch(
 pub(crate) fn restore(
     formulation: Formulation,
     scene: &Scene,
-    particles: Particles,
+    particles: Arc<Particles>,
     cracks: &[Crack],
     state: &[u8],
 ) -> Result<Box<dyn Solver>, SimulationError> {

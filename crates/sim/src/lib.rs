@@ -22,8 +22,10 @@ mod measure;
 mod particles;
 mod pieces;
 mod saved;
+mod scan;
 mod simulation;
 mod solver;
+mod spans;
 mod stress_intensity;
 #[cfg(test)]
 mod test_scenes;

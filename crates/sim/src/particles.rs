@@ -1,11 +1,12 @@
 //! Laying particles into bodies, and picking some of them.
 
 use crate::SimulationError;
+use crate::scan::Places;
+use crate::spans::{Span, SpanRows};
 use fissure_scene::{Body, Point, Region, Scene, Selection, bounds};
-use serde::{Deserialize, Serialize};
 
 /// The particles of all bodies at rest, in the order body, row, column. Shape: one entry per particle in every list.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone)]
 pub(crate) struct Particles {
     /// Corner from which particles are counted: the lower left of the box around all bodies [m].
     pub(crate) anchor: Point,
@@ -23,6 +24,8 @@ pub(crate) struct Particles {
     pub(crate) volume: Vec<f64>,
     /// Mass per unit thickness m_p [kg/m].
     pub(crate) mass: Vec<f64>,
+    /// Which particle stands where.
+    lattice: SpanRows,
 }
 
 /// Memory a particle takes with its share of the grid and of a frame on its way to disk [bytes]: about 50 numbers of 8 bytes.
@@ -50,6 +53,7 @@ impl Particles {
             material: Vec::new(),
             volume: Vec::new(),
             mass: Vec::new(),
+            lattice: SpanRows::default(),
         };
         for (index, body) in scene.bodies.iter().enumerate() {
             let before = particles.len();
@@ -58,28 +62,42 @@ impl Particles {
                 return Err(SimulationError::NoParticles { body: body.name.clone(), spacing: s });
             }
         }
+        particles.lattice = lattice_of(&particles.place);
         Ok(particles)
     }
 
     fn fill_body(&mut self, index: u32, body: &Body, scene: &Scene) {
         let s = self.spacing;
-        let (low, high) = body.region.bounds();
-        let first = ((low - self.anchor) / s).map(|t| t.floor() as i32);
-        let last = ((high - self.anchor) / s).map(|t| t.ceil() as i32);
-        for j in first.y..=last.y {
-            for i in first.x..=last.x {
-                let center = self.anchor + nalgebra::Vector2::new(f64::from(i) + 0.5, f64::from(j) + 0.5) * s;
-                if body.region.contains(center) {
-                    let material = body.material_at(center);
-                    self.place.push([i, j]);
-                    self.rest.push(center);
-                    self.body.push(index);
-                    self.material.push(material as u32);
-                    self.volume.push(s * s);
-                    self.mass.push(s * s * scene.materials[material].density);
-                }
+        let places = Places { anchor: self.anchor, spacing: s };
+        places.for_each_run_inside(&body.region, |j, columns| {
+            for i in columns {
+                let center = places.at(i, j);
+                let material = body.material_at(center);
+                self.place.push([i, j]);
+                self.rest.push(center);
+                self.body.push(index);
+                self.material.push(material as u32);
+                self.volume.push(s * s);
+                self.mass.push(s * s * scene.materials[material].density);
             }
-        }
+        });
+    }
+
+    /// The particle at a place of the lattice.
+    pub(crate) fn at(&self, [i, j]: [i32; 2]) -> Option<usize> {
+        self.lattice.number(i, j)
+    }
+
+    /// The particles in the box from `low` to `high` (column, row; both included), row by row, columns rising.
+    pub(crate) fn within(&self, low: [i32; 2], high: [i32; 2]) -> impl Iterator<Item = usize> {
+        self.lattice.within(low, high).map(|(_, _, particle)| particle)
+    }
+
+    /// The particles at rest in a box [m], which may be a row larger, row by row.
+    pub(crate) fn in_box(&self, low: Point, high: Point) -> impl Iterator<Item = usize> {
+        let first = ((low - self.anchor) / self.spacing).map(|t| t.floor() as i32);
+        let last = ((high - self.anchor) / self.spacing).map(|t| t.ceil() as i32);
+        self.within([first.x, first.y], [last.x, last.y])
     }
 
     /// Number of particles.
@@ -103,6 +121,31 @@ impl Particles {
     fn filter(&self, mut keep: impl FnMut(usize) -> bool) -> Vec<u32> {
         (0..self.len()).filter(|&p| keep(p)).map(|p| p as u32).collect()
     }
+}
+
+/// Spans of the particles in each row, numbered as they are. Of two particles in one place, where the outlines of bodies overlap by rounding, it holds the first.
+fn lattice_of(place: &[[i32; 2]]) -> SpanRows {
+    let mut runs: Vec<(i32, Span)> = Vec::new();
+    for (p, &[i, j]) in place.iter().enumerate() {
+        match runs.last_mut() {
+            Some((row, span)) if *row == j && span.end == i => span.end += 1,
+            _ => runs.push((j, Span { first: i, end: i + 1, number: p as u32 })),
+        }
+    }
+    runs.sort_unstable_by_key(|(row, span)| (*row, span.first, span.number));
+    let mut lattice = SpanRows::default();
+    let mut taken = (i32::MIN, i32::MIN);
+    for (row, mut span) in runs {
+        if taken.0 == row && span.first < taken.1 {
+            let twice = taken.1 - span.first;
+            span = Span { first: taken.1, number: span.number + twice as u32, ..span };
+        }
+        if span.first < span.end {
+            taken = (row, span.end);
+            lattice.push(row, span);
+        }
+    }
+    lattice
 }
 
 fn check_memory(scene: &Scene, spacing: f64) -> Result<(), SimulationError> {

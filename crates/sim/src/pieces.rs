@@ -20,7 +20,6 @@ pub(crate) fn split(particles: &Particles, cracks: &[Crack], cell_size: f64, pie
         })
         .collect();
     let division = Division::new(&lines, TipDivision::LineCrossing, TipCut::PLAIN, cell_size, s, s / cell_size);
-    let at: HashMap<[i32; 2], usize> = particles.place.iter().enumerate().map(|(p, &place)| (place, p)).collect();
     let mut parent: Vec<usize> = (0..particles.len()).collect();
     fn root(parent: &mut [usize], mut p: usize) -> usize {
         while parent[p] != p {
@@ -32,7 +31,7 @@ pub(crate) fn split(particles: &Particles, cracks: &[Crack], cell_size: f64, pie
     for p in 0..particles.len() {
         for step in [[1, 0], [0, 1]] {
             let place = particles.place[p];
-            let Some(&q) = at.get(&[place[0] + step[0], place[1] + step[1]]) else { continue };
+            let Some(q) = particles.at([place[0] + step[0], place[1] + step[1]]) else { continue };
             // A particle exactly on a crack belongs to its upper side; as a node it would be beyond the crack from either side.
             let crossed =
                 |from: usize, to: usize| !division.crossed(particles.rest[from], particles.rest[to]).is_empty();

@@ -9,7 +9,10 @@ use crate::{SimulationError, pieces, saved};
 use fissure_scene::{Energies, Formulation, Frame, Pose, Scene, TipRecord, Vector};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
+#[cfg(test)]
+mod far_apart;
 mod growing;
 mod relaxation;
 mod switching;
@@ -20,7 +23,7 @@ pub struct Simulation {
     scene: Scene,
     elastic: Vec<Elastic>,
     solver: Box<dyn Solver>,
-    particles: Particles,
+    particles: Arc<Particles>,
     formulation: Formulation,
     state: State,
     /// Largest stable time step at the last look [s].
@@ -118,7 +121,7 @@ impl Simulation {
     /// When the scene cannot be simulated: see [`SimulationError`].
     pub fn new(scene: &Scene) -> Result<Self, SimulationError> {
         let cracks = Crack::of_scene(scene);
-        let particles = Particles::fill(scene)?;
+        let particles = Arc::new(Particles::fill(scene)?);
         let elastic: Vec<Elastic> = scene.materials.iter().map(|m| Elastic::new(m, scene.plane)).collect();
         let choice = formulation::choose(scene, &elastic);
         let scene = &formulation::settle(scene, choice.formulation);
@@ -449,7 +452,7 @@ impl Simulation {
         if saved.version != env!("CARGO_PKG_VERSION") || saved.scene_hash != scene.hash {
             return Err(SimulationError::BadState("it is of another scene or version".into()));
         }
-        let particles = Particles::fill(scene)?;
+        let particles = Arc::new(Particles::fill(scene)?);
         let elastic: Vec<Elastic> = scene.materials.iter().map(|m| Elastic::new(m, scene.plane)).collect();
         let scene = &formulation::settle(scene, saved.formulation);
         let cracks = &saved.state.cracks;

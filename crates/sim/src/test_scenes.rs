@@ -85,6 +85,15 @@ pub(crate) fn add_crack(scene: &mut Scene, points: &[[f64; 2]]) {
     });
 }
 
+/// Adds the shape of the first body once more, moved by `away` [m].
+pub(crate) fn add_body(scene: &mut Scene, away: [f64; 2]) {
+    let mut body = scene.bodies[0].clone();
+    body.name = format!("body {}", scene.bodies.len());
+    body.region.exterior.iter_mut().for_each(|p| *p += Vector::from(away));
+    body.velocities.clear();
+    scene.bodies.push(body);
+}
+
 /// Gives the places in `selection` of the first body an initial velocity: `velocity` plus `angular_velocity` around `center`.
 pub(crate) fn set_motion(
     scene: &mut Scene,

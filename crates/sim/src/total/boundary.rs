@@ -26,19 +26,21 @@ pub(super) struct Constraint {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SurfaceNode {
     field: u32,
+    /// Where its node is at rest [m].
+    place: Point,
     /// How far the material goes beyond the node towards an obstacle [m]; negative when it ends before it.
     reach: f64,
 }
 
 /// The surface node of a field whose hat is filled with material to the given part; none within the material and far from it.
-fn surface_node(field: usize, part: f64, h: f64) -> Option<SurfaceNode> {
+fn surface_node(field: usize, place: Point, part: f64, h: f64) -> Option<SurfaceNode> {
     if part <= 0.0 || part > 0.999 {
         return None;
     }
     // A half-plane of material whose edge lies d beyond the node fills the part ½ + d/h ∓ ½ (d/h)² of the node's hat; solved for d.
     let beyond = |x: f64| h * (1.0 - (1.0 - x).max(0.0).sqrt());
     let reach = if part >= 0.5 { beyond(2.0 * part - 1.0) } else { -beyond(1.0 - 2.0 * part) };
-    Some(SurfaceNode { field: field as u32, reach })
+    Some(SurfaceNode { field: field as u32, place, reach })
 }
 
 impl Total {
@@ -164,8 +166,8 @@ impl Total {
         let bodies = self.body_of_fields();
         for support in 0..self.scene.supports.len() {
             let before = constraints.len();
-            for field in 0..self.state.mass.len() {
-                if self.holds(support, field, &bodies) {
+            for (field, place) in self.places_of_fields().enumerate() {
+                if self.holds(support, field, self.grid.place(place), &bodies) {
                     constraints.push(Constraint { field: field as u32, support: support as u32 });
                 }
             }
@@ -176,13 +178,12 @@ impl Total {
         Ok(constraints)
     }
 
-    /// Whether a support holds a field.
-    fn holds(&self, support: usize, field: usize, bodies: &[u32]) -> bool {
+    /// Whether a support holds a field whose node is at `place` at rest.
+    fn holds(&self, support: usize, field: usize, place: Point, bodies: &[u32]) -> bool {
         if self.state.mass[field] == 0.0 {
             return false;
         }
         let selection = &self.scene.supports[support].selection;
-        let place = self.grid.position(self.state.fields.node(field));
         let slack = match selection {
             // Nodes on the side and, where the side is not on a grid line, those beyond it or nearer than half a cell.
             Selection::Edge { .. } => 0.499 * self.grid.cell_size,
@@ -197,16 +198,33 @@ impl Total {
             return Vec::new();
         }
         let bodies = self.body_of_fields();
+        let changed = self.fields_near(near);
         let place = |field: usize| self.grid.position(self.state.fields.node(field));
-        let changed: Vec<usize> = (0..self.state.mass.len()).filter(|&field| near.contains(place(field))).collect();
         let mut constraints: Vec<Constraint> =
             self.constraints.iter().filter(|c| !near.contains(place(c.field as usize))).copied().collect();
         for support in 0..self.scene.supports.len() {
-            let held = changed.iter().filter(|&&field| self.holds(support, field, &bodies));
-            constraints.extend(held.map(|&field| Constraint { field: field as u32, support: support as u32 }));
+            let held = changed.iter().filter(|&&(field, place)| self.holds(support, field, place, &bodies));
+            constraints.extend(held.map(|&(field, _)| Constraint { field: field as u32, support: support as u32 }));
         }
         constraints.sort_unstable_by_key(|c| (c.support, c.field));
         constraints
+    }
+
+    /// The fields where something has changed, rising, with the places of their nodes at rest [m].
+    fn fields_near(&self, near: &Near) -> Vec<(usize, Point)> {
+        let mut nodes: Vec<(usize, Point)> = Vec::new();
+        for (low, high) in near.widened(0.0) {
+            let around = self.grid.nodes_around(low, high).map(|(node, place)| (node, self.grid.place(place)));
+            nodes.extend(around.filter(|&(_, place)| near.contains(place)));
+        }
+        let further = |&(node, place): &(usize, Point)| {
+            self.state.fields.of(node).iter().map(move |(_, field)| (*field as usize, place))
+        };
+        let mut fields: Vec<(usize, Point)> = nodes.iter().flat_map(further).collect();
+        fields.append(&mut nodes);
+        fields.sort_unstable_by_key(|f| f.0);
+        fields.dedup_by_key(|f| f.0);
+        fields
     }
 
     fn body_of_fields(&self) -> Vec<u32> {
@@ -229,7 +247,8 @@ impl Total {
         for p in 0..self.particles.len() {
             self.for_each_entry(p, |field, w, _| volume[field] += self.particles.volume[p] * w);
         }
-        volume.iter().enumerate().filter_map(|(field, v)| surface_node(field, v / (h * h), h)).collect()
+        let fields = volume.iter().zip(self.places_of_fields()).enumerate();
+        fields.filter_map(|(field, (v, place))| surface_node(field, self.grid.place(place), v / (h * h), h)).collect()
     }
 
     /// [`Total::surface_nodes`] after a change: fields elsewhere are as before.
@@ -239,12 +258,11 @@ impl Total {
         }
         let h = self.grid.cell_size;
         let place = |field: usize| self.grid.position(self.state.fields.node(field));
-        let mut surface: Vec<SurfaceNode> =
-            self.surface.iter().filter(|s| !near.contains(place(s.field as usize))).copied().collect();
+        let mut surface: Vec<SurfaceNode> = self.surface.iter().filter(|s| !near.contains(s.place)).copied().collect();
         // Every particle that has a weight at a node in the boxes, in the order of their numbers.
         let mut particles: Vec<usize> = Vec::new();
         for (low, high) in near.widened(2.0 * h) {
-            self.for_each_particle_in(low, high, |p| particles.push(p));
+            particles.extend(self.particles.in_box(low, high));
         }
         particles.sort_unstable();
         particles.dedup();
@@ -256,7 +274,7 @@ impl Total {
                 }
             });
         }
-        surface.extend(volume.iter().filter_map(|(&field, v)| surface_node(field, v / (h * h), h)));
+        surface.extend(volume.iter().filter_map(|(&field, v)| surface_node(field, place(field), v / (h * h), h)));
         surface.sort_unstable_by_key(|s| s.field);
         surface
     }
@@ -283,7 +301,7 @@ impl Total {
             for node in &self.surface {
                 let d = node.field as usize;
                 let u = &self.state.displacement;
-                let place = self.grid.position(self.state.fields.node(d)) + Vector::new(u[0][d], u[1][d]);
+                let place = node.place + Vector::new(u[0][d], u[1][d]);
                 let found = placed.surface(place);
                 if found.distance > node.reach {
                     continue;

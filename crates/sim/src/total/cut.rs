@@ -3,6 +3,7 @@
 use super::{FieldVectors, NONE, Run, Total};
 use crate::crack::Crack;
 use crate::crossing::Side;
+use crate::grid::GridRow;
 use fissure_scene::{CrackEnd, Matrix, Point, Vector};
 use serde::{Deserialize, Serialize};
 
@@ -147,6 +148,9 @@ impl Probe {
 /// A misfit below this is round-off [–].
 const NO_MISFIT: f64 = 1e-15;
 
+/// A weight below this comes from the rounding of a place [–].
+const ROUND_OFF: f64 = 1e-9;
+
 /// How far beside a crack the side of a face point is decided, in cells.
 const NUDGE: f64 = 1e-6;
 
@@ -156,11 +160,12 @@ impl Total {
         let place = self.particles.rest[particle];
         let stencil = self.stencil(place);
         let near = self.division.is_near(place);
+        let nodes = self.grid.stencil(&stencil);
         let mut entries = Vec::with_capacity(stencil.width * stencil.width);
         for b in 0..stencil.width {
             for a in 0..stencil.width {
                 let (w, g) = (stencil.weight(a, b), stencil.weight_gradient(a, b));
-                let node = self.stencil_node(&stencil, a, b);
+                let Some(node) = nodes.at(a, b) else { continue };
                 if !near {
                     entries.push(Entry { field: node as u32, weight: w, gradient: [g.x, g.y] });
                     continue;
@@ -180,14 +185,14 @@ impl Total {
     }
 
     /// Whether all four particles of a cell are there, whole, and of one material; then its material.
-    fn whole_cell(&self, column: usize, row: usize) -> Option<u32> {
+    fn whole_cell(&self, column: i32, row: i32) -> Option<u32> {
         // Place of the cell's lower left particle on the particle lattice, which starts at a node.
         let base = (self.grid.origin - self.particles.anchor) / self.particles.spacing;
-        let (i0, j0) = (base.x.round() as i32 + 2 * column as i32, base.y.round() as i32 + 2 * row as i32);
+        let (i0, j0) = (base.x.round() as i32 + 2 * column, base.y.round() as i32 + 2 * row);
         let mut material = None;
         let mut body = None;
         for (i, j) in [(i0, j0), (i0 + 1, j0), (i0, j0 + 1), (i0 + 1, j0 + 1)] {
-            let p = self.lattice.at(i, j)?;
+            let p = self.particles.at([i, j])?;
             if self.division.is_near(self.particles.rest[p]) {
                 return None;
             }
@@ -200,49 +205,54 @@ impl Total {
         material
     }
 
-    /// The runs of one row of cells.
-    pub(super) fn runs_of_row(&self, row: usize) -> Vec<Run> {
+    /// The runs of the cells above a row of nodes, which is given by its index.
+    pub(super) fn runs_of_row(&self, index: usize) -> Vec<Run> {
         let mut runs: Vec<Run> = Vec::new();
         if !self.has_rows() {
             return runs;
         }
-        for column in 0..self.grid.columns - 1 {
-            let Some(material) = self.whole_cell(column, row) else { continue };
-            match runs.last_mut() {
-                Some(run) if run.material == material && run.first + run.count == column => run.count += 1,
-                _ => runs.push(Run { first: column, count: 1, material }),
+        let GridRow { row, nodes } = self.grid.row(index);
+        for span in self.grid.spans_of_row(index) {
+            for column in span.first..span.end - 1 {
+                let Some(material) = self.whole_cell(column, row) else { continue };
+                let Some(upper) = self.grid.node([column, row + 1]) else { continue };
+                let lower = (nodes.start + span.number as usize) as u32 + (column - span.first) as u32;
+                match runs.last_mut() {
+                    Some(run) if run.material == material && run.lower + run.count == lower => run.count += 1,
+                    _ => runs.push(Run { lower, upper: upper as u32, count: 1, material }),
+                }
             }
         }
         runs
     }
 
-    /// Particles on the general path in one row of cells: those no run covers.
-    pub(super) fn cut_of_row(&self, row: usize, runs: &[Run]) -> Vec<usize> {
-        let mut covered = vec![false; self.grid.columns];
-        for run in runs {
-            covered[run.first..run.first + run.count].fill(true);
-        }
-        self.particles_of_row(row).filter(|&(column, _)| !covered[column]).map(|(_, p)| p).collect()
+    /// Particles on the general path in the cells above a row of nodes: those no run covers.
+    pub(super) fn cut_of_row(&self, index: usize, runs: &[Run]) -> Vec<usize> {
+        let row = self.grid.row(index).row;
+        let is_covered = |column: i32| {
+            let Some(node) = self.grid.node([column, row]) else { return false };
+            let after = runs.partition_point(|run| run.lower as usize <= node);
+            after > 0 && runs[after - 1].holds(node)
+        };
+        self.particles_of_row(row).filter(|&(column, _)| !is_covered(column)).map(|(_, p)| p).collect()
     }
 
-    fn particles_of_row(&self, row: usize) -> impl Iterator<Item = (usize, usize)> {
+    /// The particles in a row of cells, with their columns of cells: row by row of the particle lattice.
+    fn particles_of_row(&self, row: i32) -> impl Iterator<Item = (i32, usize)> {
         let s = self.particles.spacing / self.grid.cell_size;
         let base = self.grid.in_cells(self.particles.anchor);
-        let lattice = &self.lattice;
-        let place = move |first: i32, offset: f64, k: i32| (offset + (f64::from(first + k) + 0.5) * s).floor();
-        (0..lattice.rows).filter(move |&k| place(lattice.first[1], base.y, k) as i64 == row as i64).flat_map(move |k| {
-            (0..lattice.columns).filter_map(move |l| {
-                let p = lattice.particle[(k * lattice.columns + l) as usize];
-                let column = place(lattice.first[0], base.x, l) as usize;
-                (p != NONE).then_some((column, p as usize))
-            })
-        })
+        let cell = move |offset: f64, place: i32| (offset + (f64::from(place) + 0.5) * s).floor() as i32;
+        let place = |row: i32| (f64::from(row) - base.y) / s - 0.5;
+        let (first, last) = (place(row).floor() as i32 - 1, place(row + 1).ceil() as i32 + 1);
+        let particles = self.particles.within([i32::MIN, first], [i32::MAX, last]);
+        let of_row = particles.filter(move |&p| cell(base.y, self.particles.place[p][1]) == row);
+        of_row.map(move |p| (cell(base.x, self.particles.place[p][0]), p))
     }
 
     /// Cuts the whole lattice, at rest, and gathers the masses.
     pub(super) fn cut_all(&mut self) {
         let mut stencils = Vec::new();
-        for row in 0..self.grid.rows - 1 {
+        for row in 0..self.grid.rows() {
             let runs = self.runs_of_row(row);
             for p in self.cut_of_row(row, &runs) {
                 stencils.push(p);
@@ -301,6 +311,11 @@ impl Total {
     /// linearly instead: w_ip + ∇w_ip · (X − X_p), exact for rigid motion.
     pub(super) fn probe_entries(&self, rest: Point, nudged: Point) -> Vec<(u32, f64)> {
         let stencil = self.stencil(rest);
+        let nodes = self.grid.stencil(&stencil);
+        let mass = |field: usize| self.state.mass[field];
+        let has_material = |&node: &usize| {
+            mass(node) > 0.0 || self.state.fields.of(node).iter().any(|&(_, field)| mass(field as usize) > 0.0)
+        };
         let mut entries = Vec::with_capacity(8);
         for b in 0..stencil.width {
             for a in 0..stencil.width {
@@ -308,10 +323,15 @@ impl Total {
                 if w <= 1e-14 {
                     continue;
                 }
-                let node = self.stencil_node(&stencil, a, b);
+                let node = match nodes.at(a, b).filter(has_material) {
+                    // On the last grid line of a body, up to rounding.
+                    None if w <= ROUND_OFF => nodes.near(a, b).find(has_material),
+                    node => node,
+                };
+                let Some(node) = node else { return self.carried_entries(rest, nudged) };
                 for share in self.division.pair(nudged, self.grid.position(node)) {
                     match self.state.fields.find(node, &share.crossed) {
-                        Some(field) if self.state.mass[field] > 0.0 => entries.push((field as u32, w * share.fraction)),
+                        Some(field) if mass(field) > 0.0 => entries.push((field as u32, w * share.fraction)),
                         _ => return self.carried_entries(rest, nudged),
                     }
                 }
@@ -325,15 +345,14 @@ impl Total {
         let center = [at.x.floor() as i32, at.y.floor() as i32];
         let mut nearest: Option<(bool, f64, usize)> = None;
         for reach in [2, 6] {
-            for j in -reach..=reach {
-                for i in -reach..=reach {
-                    let Some(p) = self.lattice.at(center[0] + i, center[1] + j) else { continue };
-                    let place = self.particles.rest[p];
-                    let across = !self.division.crossed(place, nudged).is_empty();
-                    let candidate = (across, (place - rest).norm_squared(), p);
-                    if nearest.is_none_or(|n| candidate < n) {
-                        nearest = Some(candidate);
-                    }
+            for p in
+                self.particles.within(center.map(|c| c.saturating_sub(reach)), center.map(|c| c.saturating_add(reach)))
+            {
+                let place = self.particles.rest[p];
+                let across = !self.division.crossed(place, nudged).is_empty();
+                let candidate = (across, (place - rest).norm_squared(), p);
+                if nearest.is_none_or(|n| candidate < n) {
+                    nearest = Some(candidate);
                 }
             }
             if matches!(nearest, Some((false, ..))) {

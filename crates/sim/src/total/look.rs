@@ -67,14 +67,9 @@ impl Total {
         let center = [center.x.floor() as i32, center.y.floor() as i32];
         let mut found: Vec<(usize, Matrix)> = Vec::new();
         let mut mean = Matrix::zeros();
-        for j in center[1] - reach..=center[1] + reach {
-            for i in center[0] - reach..=center[0] + reach {
-                let Some(p) = self.lattice.at(i, j) else { continue };
-                if (self.particles.rest[p] - tip).norm_squared() >= radius * radius
-                    || self.particles.body[p] != line.body
-                {
-                    continue;
-                }
+        for p in self.particles.within(center.map(|c| c.saturating_sub(reach)), center.map(|c| c.saturating_add(reach)))
+        {
+            if (self.particles.rest[p] - tip).norm_squared() < radius * radius && self.particles.body[p] == line.body {
                 let h = self.strain_of(p);
                 mean += h;
                 found.push((p, h));
@@ -170,19 +165,21 @@ impl Total {
         self.check_range(time)
     }
 
-    /// Largest difference of displacement along an edge of the grid, over its length. A bound for every uncut cell: no component of H in it is larger. NaN
+    /// Largest difference of displacement along an edge of an uncut cell, over its length. A bound for every such cell: no component of H in it is larger. NaN
     /// gives infinity.
     fn largest_edge_strain(&self) -> f64 {
-        let columns = self.grid.columns;
         let mut largest = 0.0_f64;
         for u in &self.state.displacement {
-            let base = &u[..self.grid.len()];
             let mut look = |a: f64, b: f64| {
                 let difference = (a - b).abs();
                 largest = if difference <= f64::MAX { largest.max(difference) } else { f64::INFINITY };
             };
-            base.chunks_exact(columns).for_each(|row| row.windows(2).for_each(|w| look(w[0], w[1])));
-            base.iter().zip(&base[columns..]).for_each(|(a, b)| look(*a, *b));
+            for run in self.state.runs.iter().flatten() {
+                let [lower, upper] =
+                    [run.lower, run.upper].map(|first| &u[first as usize..(first + run.count + 1) as usize]);
+                [lower, upper].into_iter().for_each(|row| row.windows(2).for_each(|w| look(w[0], w[1])));
+                lower.iter().zip(upper).for_each(|(a, b)| look(*a, *b));
+            }
         }
         largest / self.grid.cell_size
     }
@@ -228,16 +225,21 @@ impl Total {
         let fields = self.state.mass.len();
         let root: Vec<f64> = self.inverse_mass.iter().map(|m| m.sqrt()).collect();
         // A fixed start with all wavelengths in it, the shortest most, and the divided nodes, where the stiffest modes sit, stressed.
-        let mut q: FieldVectors = [0, 1].map(|axis| {
-            (0..fields)
-                .map(|d| {
+        let mut q: FieldVectors = [0, 1].map(|axis: i32| {
+            self.places_of_fields()
+                .enumerate()
+                .map(|(d, [i, j])| {
                     if root[d] == 0.0 {
                         return 0.0;
                     }
-                    let node = self.state.fields.node(d);
-                    let (i, j) = (node % self.grid.columns, node / self.grid.columns);
-                    let sign = if (i + axis * (i + j)).is_multiple_of(2) { 1.0 } else { -1.0 };
-                    let jitter = ((d * 7919 + axis * 104_729) % 1009) as f64 / 1009.0;
+                    let sign = if (i + axis * (i + j)) & 1 == 0 { 1.0 } else { -1.0 };
+                    // Numbered as if all nodes of the box were there, so that it is the same however much of it is empty.
+                    let number = match d.checked_sub(self.grid.len()) {
+                        None => self.grid.number_in_box([i, j]),
+                        Some(further) => self.grid.nodes_of_box() + further as i64,
+                    };
+                    let jitter = (number.rem_euclid(1009) * 7919 + i64::from(axis) * 104_729) % 1009;
+                    let jitter = jitter as f64 / 1009.0;
                     let divided = if d >= self.grid.len() { 4.0 } else { 1.0 };
                     sign * (0.5 + jitter) * divided
                 })

@@ -22,7 +22,7 @@ use crate::crossing::Side;
 use crate::division::{CrackLine, Division, TipCut};
 use crate::elastic::Elastic;
 use crate::fields::Fields;
-use crate::grid::Grid;
+use crate::grid::{Grid, Walker};
 use crate::kernel;
 use crate::particles::Particles;
 use crate::solver::{Handover, Observed, Release, Solver, SolverEnergies};
@@ -33,9 +33,10 @@ use fissure_scene::{
     CrackEnd, CrackFrame, End, Kernel, Matrix, OutlineFrame, ParticleFrame, Point, Scene, SolverSettings, TipDivision,
     Vector,
 };
-use rows::{NodeRows, RowConstants, Run};
+use rows::{CellRows, RowConstants, Run};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use tie::{Ties, TipKey, key};
 
 /// A vector at every field, x and y apart.
@@ -54,7 +55,7 @@ struct State {
     velocity: FieldVectors,
     /// Particles on the general path with their stencils.
     cut: CutParticles,
-    /// Runs of uncut cells in each row of cells.
+    /// Runs of uncut cells above each row of nodes.
     runs: Vec<Vec<Run>>,
     /// The rings as probes, doubled at mouths.
     outlines: Vec<Vec<Probe>>,
@@ -80,9 +81,7 @@ pub(crate) struct Total {
     scene: Scene,
     settings: SolverSettings,
     elastic: Vec<Elastic>,
-    particles: Particles,
-    /// Particle at each place of the particle lattice.
-    lattice: ParticleLattice,
+    particles: Arc<Particles>,
     grid: Grid,
     division: Division,
     colliders: Vec<Obstacle>,
@@ -98,41 +97,11 @@ pub(crate) struct Total {
     steps_since_check: u32,
 }
 
-/// Which particle stands where on the particle lattice.
-#[derive(Debug)]
-struct ParticleLattice {
-    first: [i32; 2],
-    columns: i32,
-    rows: i32,
-    particle: Vec<u32>,
-}
-
 const NONE: u32 = u32::MAX;
-
-impl ParticleLattice {
-    fn new(particles: &Particles) -> Self {
-        let low = particles.place.iter().fold([i32::MAX; 2], |a, p| [a[0].min(p[0]), a[1].min(p[1])]);
-        let high = particles.place.iter().fold([i32::MIN; 2], |a, p| [a[0].max(p[0]), a[1].max(p[1])]);
-        let (columns, rows) = (high[0] - low[0] + 1, high[1] - low[1] + 1);
-        let mut particle = vec![NONE; (columns as usize) * (rows as usize)];
-        for (p, place) in particles.place.iter().enumerate() {
-            particle[((place[1] - low[1]) * columns + place[0] - low[0]) as usize] = p as u32;
-        }
-        Self { first: low, columns, rows, particle }
-    }
-
-    fn at(&self, i: i32, j: i32) -> Option<usize> {
-        let (i, j) = (i - self.first[0], j - self.first[1]);
-        if i < 0 || j < 0 || i >= self.columns || j >= self.rows {
-            return None;
-        }
-        Some(self.particle[(j * self.columns + i) as usize]).filter(|&p| p != NONE).map(|p| p as usize)
-    }
-}
 
 impl Total {
     /// Lays the lattice and cuts it by the initial cracks.
-    pub(crate) fn new(scene: &Scene, particles: Particles, cracks: &[Crack]) -> Result<Self, SimulationError> {
+    pub(crate) fn new(scene: &Scene, particles: Arc<Particles>, cracks: &[Crack]) -> Result<Self, SimulationError> {
         let (mut low, mut high) = fissure_scene::bounds(&[]);
         for body in &scene.bodies {
             let (l, h) = body.region.bounds();
@@ -140,17 +109,21 @@ impl Total {
         }
         // The wider kernels reach one node beyond the cell.
         let margin = if kernel::width(scene.solver.kernel) == 2 { 0 } else { 1 };
-        let grid = Grid::around(particles.anchor, low, high, scene.cell_size, margin);
+        let lattice = Grid::around(particles.anchor, low, high, scene.cell_size, margin)
+            .ok_or_else(|| too_wide(scene, low, high))?;
+        let mut grid = lattice.clone();
+        let lowest = particles.rest.iter().map(|&place| stencil_of(scene, &lattice, place).first);
+        grid.lay(lowest, kernel::width(scene.solver.kernel), 0);
         let elastic = scene.materials.iter().map(|m| Elastic::new(m, scene.plane)).collect();
-        let lattice = ParticleLattice::new(&particles);
-        let zeros = || [vec![0.0; grid.len()], vec![0.0; grid.len()]];
+        let nodes = grid.len();
+        let zeros = || [vec![0.0; nodes], vec![0.0; nodes]];
         let state = State {
             fields: Fields::new(grid.len()),
             mass: vec![0.0; grid.len()],
             displacement: zeros(),
             velocity: zeros(),
             cut: CutParticles::new(particles.len()),
-            runs: vec![Vec::new(); grid.rows - 1],
+            runs: vec![Vec::new(); grid.rows()],
             outlines: Vec::new(),
             faces: Vec::new(),
             external_work: 0.0,
@@ -163,7 +136,6 @@ impl Total {
             scene: scene.clone(),
             settings: scene.solver,
             elastic,
-            lattice,
             grid,
             division: Self::division_of(scene, cracks, &BTreeMap::new()),
             colliders: scene.colliders.iter().map(Obstacle::new).collect(),
@@ -192,7 +164,7 @@ impl Total {
     /// When the state is not one of this scene.
     pub(crate) fn restore(
         scene: &Scene,
-        particles: Particles,
+        particles: Arc<Particles>,
         cracks: &[Crack],
         state: &[u8],
     ) -> Result<Self, SimulationError> {
@@ -220,20 +192,6 @@ impl Total {
         let lines: Vec<CrackLine> = cracks.iter().enumerate().map(|(i, c)| c.line(i, points(i, c), beyond)).collect();
         let cut = TipCut::tied(tie::split_ahead(scene.growth.increment));
         Division::new(&lines, scene.solver.tip_division, cut, scene.cell_size, scene.particle_spacing, reach)
-    }
-
-    /// Calls `visit` with every particle in a box, which may be a row larger, row by row.
-    fn for_each_particle_in(&self, low: Point, high: Point, mut visit: impl FnMut(usize)) {
-        let s = self.particles.spacing;
-        let first = ((low - self.particles.anchor) / s).map(|t| t.floor() as i32);
-        let last = ((high - self.particles.anchor) / s).map(|t| t.ceil() as i32);
-        for j in first.y..=last.y {
-            for i in first.x..=last.x {
-                if let Some(p) = self.lattice.at(i, j) {
-                    visit(p);
-                }
-            }
-        }
     }
 
     /// Whether uncut cells can go as rows.
@@ -275,24 +233,18 @@ impl Total {
             }
         } else {
             let stencil = self.stencil(self.particles.rest[particle]);
+            // All nodes of a particle exist.
+            let Some(rows) = Walker::new(&self.grid).rows(stencil.first, stencil.width) else { return };
             for b in 0..stencil.width {
                 for a in 0..stencil.width {
-                    visit(self.stencil_node(&stencil, a, b), stencil.weight(a, b), stencil.weight_gradient(a, b));
+                    visit(rows[b] + a, stencil.weight(a, b), stencil.weight_gradient(a, b));
                 }
             }
         }
     }
 
     fn stencil(&self, place: Point) -> kernel::Stencil {
-        let x = self.grid.in_cells(place);
-        let half_size = 0.5 * self.particles.spacing / self.grid.cell_size;
-        kernel::Stencil::new(self.settings.kernel, half_size, [x.x, x.y], 1.0 / self.grid.cell_size)
-    }
-
-    fn stencil_node(&self, stencil: &kernel::Stencil, a: usize, b: usize) -> usize {
-        let column = (stencil.first[0] + a as i32).clamp(0, self.grid.columns as i32 - 1) as usize;
-        let row = (stencil.first[1] + b as i32).clamp(0, self.grid.rows as i32 - 1) as usize;
-        row * self.grid.columns + column
+        stencil_of(&self.scene, &self.grid, place)
     }
 
     /// Internal forces for the displacement `u` into `force`.
@@ -308,7 +260,6 @@ impl Total {
             f.clear();
             f.resize(fields, 0.0);
         }
-        let columns = self.grid.columns;
         let volume = self.particles.spacing * self.particles.spacing;
         let inverse_cell_size = 1.0 / self.grid.cell_size;
         let constants: Vec<RowConstants> = self
@@ -320,40 +271,23 @@ impl Total {
                 inverse_cell_size,
             })
             .collect();
-        let nodes = self.grid.len();
         let [force_x, force_y] = force;
-        let row_forces = |row: usize, fx: &mut [f64], fy: &mut [f64]| {
-            // fx, fy: the two rows of nodes below and above the row of cells.
-            let at = row * columns;
-            let u = NodeRows {
-                lower: [&u[0][at..at + columns], &u[1][at..at + columns]],
-                upper: [&u[0][at + columns..at + 2 * columns], &u[1][at + columns..at + 2 * columns]],
-            };
-            let (lower_x, upper_x) = fx.split_at_mut(columns);
-            let (lower_y, upper_y) = fy.split_at_mut(columns);
-            for &run in &self.state.runs[row] {
-                rows::add_forces(run, constants[run.material as usize], &u, [lower_x, lower_y, upper_x, upper_y]);
-            }
-        };
+        let threads = rayon::current_num_threads();
+        let part = if self.grid.len() >= PARALLEL_NODES && threads > 1 { PARALLEL_NODES / 4 } else { usize::MAX };
         // Two neighbouring rows of cells share a row of nodes: even rows first, then odd ones, each pass without a shared node. The order
         // of additions at a node is the same for any number of threads.
         for parity in 0..2 {
-            let start = parity * columns;
-            let fx = &mut force_x[start.min(nodes)..nodes];
-            let fy = &mut force_y[start.min(nodes)..nodes];
-            let pairs = fx.chunks_exact_mut(2 * columns).zip(fy.chunks_exact_mut(2 * columns)).enumerate();
-            if nodes >= PARALLEL_NODES && rayon::current_num_threads() > 1 {
-                use rayon::prelude::*;
-                fx.par_chunks_exact_mut(2 * columns)
-                    .zip(fy.par_chunks_exact_mut(2 * columns))
-                    .enumerate()
-                    .with_min_len(PARALLEL_NODES / (8 * columns) + 1)
-                    .for_each(|(pair, (fx, fy))| row_forces(2 * pair + parity, fx, fy));
-            } else {
-                pairs.for_each(|(pair, (fx, fy))| row_forces(2 * pair + parity, fx, fy));
-            }
+            let rows = CellRows { runs: &self.state.runs, grid: &self.grid, constants: &constants, u, parity, part };
+            rows.add_forces(0..self.grid.rows(), 0, [&mut *force_x, &mut *force_y]);
         }
         self.add_cut_forces(u, with_misfits, force_x, force_y);
+    }
+
+    /// Where the node of each field is on the lattice.
+    fn places_of_fields(&self) -> impl Iterator<Item = [i32; 2]> {
+        let further = self.grid.len()..self.state.fields.len();
+        let own = self.grid.nodes().map(|(_, place)| place);
+        own.chain(further.map(|field| self.grid.place_of(self.state.fields.node(field))))
     }
 
     fn kinetic(&self) -> f64 {
@@ -373,6 +307,16 @@ impl Total {
             .sum::<f64>()
             + self.state.ties.energy(&self.state.displacement)
     }
+}
+
+fn too_wide(scene: &Scene, low: Point, high: Point) -> SimulationError {
+    SimulationError::TooWide { width: (high - low).amax(), cell_size: scene.cell_size }
+}
+
+fn stencil_of(scene: &Scene, grid: &Grid, place: Point) -> kernel::Stencil {
+    let x = grid.in_cells(place);
+    let half_size = 0.5 * scene.particle_spacing / grid.cell_size;
+    kernel::Stencil::new(scene.solver.kernel, half_size, [x.x, x.y], 1.0 / grid.cell_size)
 }
 
 /// From so many nodes on, rows go to several threads; below, handing out the work costs about as much as the work. The result is the same either way.
@@ -529,8 +473,8 @@ impl Solver for Total {
     fn momenta(&self) -> (Vector, f64) {
         let (u, v) = (&self.state.displacement, &self.state.velocity);
         let (mut linear, mut angular) = (Vector::zeros(), 0.0);
-        for (d, &mass) in self.state.mass.iter().enumerate() {
-            let place = self.grid.position(self.state.fields.node(d)).coords + Vector::new(u[0][d], u[1][d]);
+        for ((d, &mass), place) in self.state.mass.iter().enumerate().zip(self.places_of_fields()) {
+            let place = self.grid.place(place).coords + Vector::new(u[0][d], u[1][d]);
             let momentum = Vector::new(v[0][d], v[1][d]) * mass;
             linear += momentum;
             angular += place.perp(&momentum);

@@ -83,21 +83,14 @@ impl Total {
     pub(super) fn recut_particles(&mut self, boxes: &[(Point, Point)]) {
         let mut affected: Vec<usize> = Vec::new();
         for &(low, high) in boxes {
-            self.for_each_particle_in(low, high, |p| {
-                if self.division.is_near(self.particles.rest[p]) {
-                    affected.push(p);
-                }
-            });
+            affected
+                .extend(self.particles.in_box(low, high).filter(|&p| self.division.is_near(self.particles.rest[p])));
         }
         affected.sort_unstable();
         affected.dedup();
         // Cells that were whole leave their run; all their particles go on the general path.
-        let mut rows: Vec<usize> = affected
-            .iter()
-            .map(|&p| self.grid.cell(self.particles.rest[p]).1)
-            .filter(|&row| row >= 0 && (row as usize) < self.state.runs.len())
-            .map(|row| row as usize)
-            .collect();
+        let mut rows: Vec<usize> =
+            affected.iter().filter_map(|&p| self.grid.row_index(self.grid.cell(self.particles.rest[p])[1])).collect();
         rows.dedup();
         rows.sort_unstable();
         rows.dedup();

@@ -3,18 +3,31 @@
 //! On a lattice of 2×2 particles per cell and bilinear kernels the stencil is the same in every uncut cell, so a run of such cells is one
 //! loop over contiguous arrays, and an elastic particle in it needs no state at all: H = Σ u_i ⊗ ∇w_ip.
 
+use super::FieldVectors;
+use crate::grid::Grid;
+use std::ops::Range;
+
 /// Cells treated at once.
 const BLOCK: usize = 32;
 
-/// A run of uncut cells of one material in one row of cells.
+/// A run of uncut cells of one material in one row of cells. Its nodes, one more than cells, are side by side in the row below and in the row above.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(super) struct Run {
-    /// First cell (column).
-    pub(super) first: usize,
+    /// Lower left node of its first cell.
+    pub(super) lower: u32,
+    /// Upper left node of its first cell.
+    pub(super) upper: u32,
     /// Number of cells.
-    pub(super) count: usize,
+    pub(super) count: u32,
     /// Material.
     pub(super) material: u32,
+}
+
+impl Run {
+    /// Whether its cells have the lower left node `node` among them.
+    pub(super) fn holds(&self, node: usize) -> bool {
+        (self.lower as usize..(self.lower + self.count) as usize).contains(&node)
+    }
 }
 
 /// Elastic constants of a run, with lengths folded in.
@@ -27,19 +40,62 @@ pub(super) struct RowConstants {
     pub(super) inverse_cell_size: f64,
 }
 
-/// Displacements or forces of two neighbouring rows of nodes, x and y apart.
-pub(super) struct NodeRows<'a> {
-    pub(super) lower: [&'a [f64]; 2],
-    pub(super) upper: [&'a [f64]; 2],
+/// Every other row of cells: none shares a node with another.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct CellRows<'a> {
+    /// Runs above each row of nodes.
+    pub(super) runs: &'a [Vec<Run>],
+    pub(super) grid: &'a Grid,
+    /// Of each material.
+    pub(super) constants: &'a [RowConstants],
+    /// Displacements of all fields.
+    pub(super) u: &'a FieldVectors,
+    /// Rows counted: even (0) or odd (1) ones.
+    pub(super) parity: usize,
+    /// Nodes from which on rows are shared out between threads.
+    pub(super) part: usize,
 }
 
-/// Adds the internal forces f_i = −Σ_p V_p P_p ∇w_ip of the cells of `run` to two rows of node forces.
+impl CellRows<'_> {
+    /// Adds the forces of the cells above `rows` of nodes to `forces`, which begin at node `start`.
+    pub(super) fn add_forces(&self, rows: Range<usize>, start: usize, forces: [&mut [f64]; 2]) {
+        let [force_x, force_y] = forces;
+        if force_x.len() > self.part && rows.len() > 2 {
+            // Cut below a row of nodes that belongs to no cell of the row before.
+            let middle = rows.start + rows.len() / 2;
+            let middle = middle + (middle + self.parity) % 2;
+            let at = self.grid.row(middle).nodes.start;
+            let (lower_x, upper_x) = force_x.split_at_mut(at - start);
+            let (lower_y, upper_y) = force_y.split_at_mut(at - start);
+            rayon::join(
+                || self.add_forces(rows.start..middle, start, [lower_x, lower_y]),
+                || self.add_forces(middle..rows.end, at, [upper_x, upper_y]),
+            );
+            return;
+        }
+        for row in rows.filter(|row| row % 2 == self.parity) {
+            for &run in &self.runs[row] {
+                let lower = run.lower as usize..(run.lower + run.count + 1) as usize;
+                let upper = run.upper as usize..(run.upper + run.count + 1) as usize;
+                let u = self.u.each_ref().map(|u| [&u[lower.clone()], &u[upper.clone()]]);
+                let [x, y] = [&mut *force_x, &mut *force_y].map(|force| {
+                    let (below, above) = force.split_at_mut(upper.start - start);
+                    [&mut below[lower.start - start..lower.end - start], &mut above[..upper.len()]]
+                });
+                add_forces(self.constants[run.material as usize], u, [x, y]);
+            }
+        }
+    }
+}
+
+/// Adds the internal forces f_i = −Σ_p V_p P_p ∇w_ip of a run of cells to those of its two rows of nodes.
 ///
-/// `forces`: lower x, lower y, upper x, upper y; indexed by column like the displacements.
-pub(super) fn add_forces(run: Run, constants: RowConstants, u: &NodeRows<'_>, forces: [&mut [f64]; 4]) {
-    let [lower_x, lower_y, upper_x, upper_y] = forces;
-    let mut start = run.first;
-    let end = run.first + run.count;
+/// `u`, `forces`: x, then y, each of the lower and the upper row.
+fn add_forces(constants: RowConstants, u: [[&[f64]; 2]; 2], forces: [[&mut [f64]; 2]; 2]) {
+    let [[lower_x, upper_x], [lower_y, upper_y]] = forces;
+    let [[u_lower_x, u_upper_x], [u_lower_y, u_upper_y]] = u;
+    let mut start = 0;
+    let end = u_lower_x.len() - 1;
     // Forces of each cell on its four nodes: (x, y) for lower left, lower right, upper left, upper right.
     let mut corner = [[0.0; BLOCK]; 8];
     while start < end {
@@ -48,14 +104,14 @@ pub(super) fn add_forces(run: Run, constants: RowConstants, u: &NodeRows<'_>, fo
             count,
             constants,
             [
-                &u.lower[0][start..start + count],
-                &u.lower[0][start + 1..start + 1 + count],
-                &u.upper[0][start..start + count],
-                &u.upper[0][start + 1..start + 1 + count],
-                &u.lower[1][start..start + count],
-                &u.lower[1][start + 1..start + 1 + count],
-                &u.upper[1][start..start + count],
-                &u.upper[1][start + 1..start + 1 + count],
+                &u_lower_x[start..start + count],
+                &u_lower_x[start + 1..start + 1 + count],
+                &u_upper_x[start..start + count],
+                &u_upper_x[start + 1..start + 1 + count],
+                &u_lower_y[start..start + count],
+                &u_lower_y[start + 1..start + 1 + count],
+                &u_upper_y[start..start + count],
+                &u_upper_y[start + 1..start + 1 + count],
             ],
             &mut corner,
         );
@@ -139,10 +195,9 @@ mod tests {
                 [(0..=count).map(x).collect(), (0..=count).map(y).collect()]
             };
             let ([lx, ly], [ux, uy]) = (moved(0.0), moved(1.0));
-            let u = NodeRows { lower: [&lx, &ly], upper: [&ux, &uy] };
             let mut found = [0; 4].map(|_| vec![0.0; count + 1]);
-            let run = Run { first: 0, count, material: 0 };
-            add_forces(run, constants, &u, found.each_mut().map(|f| f.as_mut_slice()));
+            let [fx, fy, gx, gy] = found.each_mut().map(|f| f.as_mut_slice());
+            add_forces(constants, [[&lx, &ux], [&ly, &uy]], [[fx, gx], [fy, gy]]);
             let most = found.iter().flatten().fold(0.0_f64, |m, f| m.max(f.abs()));
             assert!(most < 1e-13, "{most} at {angle}");
         }
@@ -155,13 +210,13 @@ mod tests {
         let count = 40;
         let values = |seed: f64| -> Vec<f64> { (0..=count).map(|i| 0.1 * ((i as f64) * seed).sin()).collect() };
         let (lx, ly, ux, uy) = (values(1.1), values(2.3), values(3.7), values(5.3));
-        let u = NodeRows { lower: [&lx, &ly], upper: [&ux, &uy] };
         let volume = 0.25 * h * h;
         let constants =
             RowConstants { two_mu: 2.0 * mu * volume / h, lambda: lambda * volume / h, inverse_cell_size: 1.0 / h };
         let mut found = [0; 4].map(|_| vec![0.0; count + 1]);
-        let run = Run { first: 1, count: count - 2, material: 0 };
-        add_forces(run, constants, &u, found.each_mut().map(|f| f.as_mut_slice()));
+        let [fx, fy, gx, gy] = found.each_mut().map(|f| &mut f[1..count]);
+        let u = [[&lx[1..count], &ux[1..count]], [&ly[1..count], &uy[1..count]]];
+        add_forces(constants, u, [[fx, gx], [fy, gy]]);
         let mut expected = [0; 4].map(|_| vec![0.0; count + 1]);
         for cell in 1..count - 1 {
             for (a, b) in [(0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75)] {

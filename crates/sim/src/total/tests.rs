@@ -8,6 +8,7 @@ use crate::solver::Solver;
 use crate::test_scenes;
 use fissure_scene::{End, Formulation, Kernel, Scene, Selection, TipDivision, Vector};
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// A square of 20 × 20 cells with an edge crack, its faces free to pass: contact acts at one node of two places, which is no couple-free pair of forces.
 fn cracked_plate() -> Scene {
@@ -22,7 +23,7 @@ fn cracked_plate() -> Scene {
 
 fn solver(scene: &Scene) -> (Total, Vec<Crack>) {
     let cracks = Crack::of_scene(scene);
-    (Total::new(scene, Particles::fill(scene).unwrap(), &cracks).unwrap(), cracks)
+    (Total::new(scene, Arc::new(Particles::fill(scene).unwrap()), &cracks).unwrap(), cracks)
 }
 
 /// Truth: without outer forces both momenta stay, to round-off.
@@ -212,4 +213,19 @@ fn faces_meet_and_do_not_sink_in() {
     cracks[0].push(End::End, tip + Vector::new(0.1, 0.02) * total.grid.cell_size);
     total.recut(&cracks, &[(0, End::End)]);
     assert!((force(&total) - before).norm() < 1e-12 * before.norm(), "{before} {}", force(&total));
+}
+
+/// Truth: the construction. A second plate far away adds the nodes and the bytes of the first, be it 100 m or 100 km off.
+#[test]
+fn nodes_and_state_go_with_the_material() {
+    let near = cracked_plate();
+    let (alone, _) = solver(&near);
+    for away in [100.0, 1e5] {
+        let mut scene = cracked_plate();
+        test_scenes::add_body(&mut scene, [away, 0.5 * away]);
+        let (both, _) = solver(&scene);
+        // The second plate has no crack, and may lie otherwise within its band of rows.
+        assert!(both.grid.len() < 2 * alone.grid.len() + 300, "{} {}", both.grid.len(), alone.grid.len());
+        assert!(both.save().len() < 2 * alone.save().len() + 10_000, "{}", both.save().len());
+    }
 }

@@ -265,17 +265,12 @@ impl Total {
         let h = self.grid.cell_size;
         let measures = self.measures();
         let (tip, direction) = (crack.tip_position(end), crack.last_direction(end));
-        let at = self.grid.in_cells(tip);
-        let (middle_column, middle_row) = (at.x.floor() as i64, at.y.floor() as i64);
-        let reach = WINDOW.ceil() as i64 + 1;
+        let [middle_column, middle_row] = self.grid.cell(tip);
+        let reach = WINDOW.ceil() as i32 + 1;
         let mut ties = Vec::new();
         for row in middle_row - reach..=middle_row + reach {
             for column in middle_column - reach..=middle_column + reach {
-                let inside = |k: i64, count: usize| usize::try_from(k).ok().filter(|&k| k < count);
-                let (Some(row), Some(column)) = (inside(row, self.grid.rows), inside(column, self.grid.columns)) else {
-                    continue;
-                };
-                let node = row * self.grid.columns + column;
+                let Some(node) = self.grid.node([column, row]) else { continue };
                 let further = self.state.fields.of(node);
                 let place = self.grid.position(node);
                 let arm = (place - tip) / h;
@@ -320,7 +315,7 @@ impl Total {
     fn field_stiffness(&self, field: u32, node: Point) -> f64 {
         let reach = Vector::repeat(0.5 * kernel::width(self.settings.kernel) as f64 * self.grid.cell_size);
         let mut stiffness = 0.0;
-        self.for_each_particle_in(node - reach, node + reach, |p| {
+        for p in self.particles.in_box(node - reach, node + reach) {
             let e = &self.elastic[self.particles.material[p] as usize];
             let modulus = e.effective_modulus * self.particles.volume[p];
             self.for_each_entry(p, |of, _, gradient| {
@@ -328,7 +323,7 @@ impl Total {
                     stiffness += modulus * gradient.norm_squared();
                 }
             });
-        });
+        }
         stiffness
     }
 

@@ -95,7 +95,6 @@ impl Updated {
         if self.loads.is_empty() {
             return;
         }
-        let grid = self.grid();
         let mut force = std::mem::take(&mut self.nodes.after);
         for (load, forces) in self.scene.loads.iter().zip(&self.loads) {
             let factor = load.curve.value(time + 0.5 * time_step);
@@ -104,7 +103,7 @@ impl Updated {
             }
             for &(p, f) in forces {
                 let f = f * factor;
-                self.for_each_entry(&grid, p as usize, |field, w| {
+                self.for_each_entry(p as usize, |field, w| {
                     force[0][field] += w * f.x;
                     force[1][field] += w * f.y;
                 });
@@ -144,7 +143,6 @@ impl Updated {
         if self.held.is_empty() {
             return false;
         }
-        let grid = self.grid();
         let mut held_mass = vec![0.0; self.nodes.mass.len()];
         let mut touched: Vec<usize> = Vec::new();
         let mut work = 0.0;
@@ -152,7 +150,7 @@ impl Updated {
             touched.clear();
             for &p in particles {
                 let m = self.particles.mass[p as usize];
-                self.for_each_entry(&grid, p as usize, |field, w| {
+                self.for_each_entry(p as usize, |field, w| {
                     if w > 0.0 {
                         if held_mass[field] == 0.0 {
                             touched.push(field);
@@ -213,16 +211,17 @@ impl Updated {
         if self.colliders.is_empty() {
             return false;
         }
-        let grid = self.grid();
         let mut work = 0.0;
         for collider in &self.colliders {
             let placed: PlacedObstacle<'_> = collider.at(time + 0.5 * time_step);
-            for field in 0..self.nodes.mass.len() {
+            let own = self.grid.nodes().map(|(_, place)| place);
+            let further = self.cut.further.iter().map(|f| self.grid.place_of(f.node as usize));
+            for (field, place) in own.chain(further).enumerate() {
                 let mass = self.nodes.mass[field];
                 if mass <= 0.0 {
                     continue;
                 }
-                let place = grid.position(self.cut.node(field));
+                let place = self.grid.place(place);
                 let before = self.nodes.velocity(field);
                 let after = placed.resolve(before, place);
                 if after != before {

@@ -91,21 +91,25 @@ impl Updated {
 
     /// Mean place at rest of every field of the divided nodes; others stay empty.
     fn rest_places(&self) -> Vec<RestPlace> {
-        let grid = self.grid();
+        let grid = &self.grid;
         let mut places = vec![RestPlace::default(); self.nodes.mass.len()];
         // Lower left nodes of the stencils that reach a divided node.
-        let width = kernel::width(self.settings.kernel);
+        let width = kernel::width(self.settings.kernel) as i32;
         let mut reaches = vec![false; grid.len()];
-        let (mut lowest, mut highest) = (grid.rows, 0);
+        let (mut lowest, mut highest) = (grid.rows(), 0);
         for field in &self.cut.further {
-            let (i, j) = (field.node as usize % grid.columns, field.node as usize / grid.columns);
-            for b in 0..width.min(j + 1) {
-                for a in 0..width.min(i + 1) {
-                    reaches[(j - b) * grid.columns + i - a] = true;
+            let [i, j] = grid.place_of(field.node as usize);
+            for b in 0..width {
+                for a in 0..width {
+                    // Without such a node there is no such stencil.
+                    if let Some(node) = grid.node([i - a, j - b]) {
+                        reaches[node] = true;
+                    }
                 }
             }
-            lowest = lowest.min((j + 1).saturating_sub(width));
-            highest = highest.max(j);
+            let rows = || (0..width).filter_map(|b| grid.row_index(j - b));
+            lowest = rows().fold(lowest, usize::min);
+            highest = rows().fold(highest, usize::max);
         }
         if lowest > highest {
             return places;
@@ -115,14 +119,14 @@ impl Updated {
         for &p in &self.order.particles[range] {
             let p = p as usize;
             let point = &self.state.points[p];
-            let stencil = self.stencil(&grid, point.position);
-            if !reaches[stencil.first[1] as usize * grid.columns + stencil.first[0] as usize] {
+            let stencil = self.stencil(point.position);
+            if grid.node(stencil.first).is_none_or(|node| !reaches[node]) {
                 continue;
             }
             let f = Matrix::identity() + self.total_gradient(p);
             let inverse = f.try_inverse().unwrap_or_else(Matrix::identity);
             let m = self.particles.mass[p];
-            self.for_each_entry(&grid, p, |field, w| {
+            self.for_each_entry(p, |field, w| {
                 let node_place = grid.position(self.cut.node(field));
                 let seen = self.particles.rest[p] - node_place + inverse * (node_place - point.position);
                 places[field].mass += m * w;
@@ -162,8 +166,7 @@ impl Updated {
 
     /// The forces of the last step between the faces of a crack: place of the node [m] and force on the face above [N/m].
     pub(super) fn face_forces(&self, crack: usize) -> impl Iterator<Item = (Point, Vector)> {
-        let grid = self.grid();
         let pressed = self.contacts.iter().filter(move |p| p.crack as usize == crack && p.force != [0.0; 2]);
-        pressed.map(move |p| (grid.position(self.cut.node(p.above as usize)), Vector::from(p.force)))
+        pressed.map(move |p| (self.grid.position(self.cut.node(p.above as usize)), Vector::from(p.force)))
     }
 }

@@ -1,7 +1,6 @@
 //! Crack points with their two faces, and outlines, carried along by the velocities on the grid (thesis 3.1.7).
 
 use super::Updated;
-use super::stencils::stencil_node;
 use crate::crack::{Crack, slot};
 use crate::crossing::Side;
 use fissure_scene::{CrackEnd, CrackFrame, End, Matrix, OutlineFrame, Point, Vector};
@@ -108,16 +107,16 @@ impl LinearFit {
 impl Updated {
     /// Velocity at `place` of the material that a particle at `side` would belong to [m/s]; none where there is none.
     fn velocity_at(&self, place: Point, side: Point) -> Option<Vector> {
-        let grid = self.grid();
         let near = self.division.is_near(side);
         let least = LEAST_MASS * self.particles.mass.first()?;
-        let stencil = self.stencil(&grid, place);
+        let stencil = self.stencil(place);
+        let nodes = self.grid.stencil(&stencil);
         let mut fit = LinearFit::default();
         for b in 0..stencil.width {
             for a in 0..stencil.width {
                 let w = stencil.weight(a, b);
-                let node = stencil_node(&grid, &stencil, a, b);
-                let node_place = grid.position(node);
+                let Some(node) = nodes.at(a, b) else { continue };
+                let node_place = self.grid.place([stencil.first[0] + a as i32, stencil.first[1] + b as i32]);
                 let mut add = |field: usize, w: f64| {
                     if self.nodes.mass[field] > least && w > 0.0 {
                         fit.add(w, node_place - place, self.nodes.velocity(field));
@@ -139,13 +138,14 @@ impl Updated {
 
     /// Velocity at `place` of the centres of mass of all fields of the nodes [m/s] (thesis eq. 20 and 21).
     fn mean_velocity_at(&self, place: Point) -> Option<Vector> {
-        let grid = self.grid();
         let least = LEAST_MASS * self.particles.mass.first()?;
-        let stencil = self.stencil(&grid, place);
+        let stencil = self.stencil(place);
+        let nodes = self.grid.stencil(&stencil);
         let mut fit = LinearFit::default();
         for b in 0..stencil.width {
             for a in 0..stencil.width {
-                let node = stencil_node(&grid, &stencil, a, b);
+                let Some(node) = nodes.at(a, b) else { continue };
+                let node_place = self.grid.place([stencil.first[0] + a as i32, stencil.first[1] + b as i32]);
                 let mut mass = self.nodes.mass[node];
                 let mut momentum = self.nodes.velocity(node) * mass;
                 for (field, _) in self.cut.further_of(node) {
@@ -154,7 +154,7 @@ impl Updated {
                 }
                 let w = stencil.weight(a, b);
                 if mass > least && w > 0.0 {
-                    fit.add(w, grid.position(node) - place, momentum / mass);
+                    fit.add(w, node_place - place, momentum / mass);
                 }
             }
         }

@@ -23,6 +23,7 @@ use crate::collider::Obstacle;
 use crate::crack::Crack;
 use crate::division::{CrackLine, Division, TipCut};
 use crate::elastic::Elastic;
+use crate::grid::Grid;
 use crate::kernel;
 use crate::particles::Particles;
 use crate::solver::{Handover, Observed, Solver, SolverEnergies};
@@ -33,6 +34,7 @@ use fissure_scene::{
 };
 use plastic::PlasticPart;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 use stencils::{Cut, Nodes, RowOrder};
 
 /// What every particle carries; one cache line.
@@ -69,7 +71,7 @@ pub(crate) struct Updated {
     scene: Scene,
     settings: SolverSettings,
     elastic: Vec<Elastic>,
-    particles: Particles,
+    particles: Arc<Particles>,
     colliders: Vec<Obstacle>,
     /// Per load: (particle, force at a curve factor of 1 [N/m]).
     loads: Vec<Vec<(u32, Vector)>>,
@@ -77,11 +79,11 @@ pub(crate) struct Updated {
     held: Vec<Vec<u32>>,
     /// Largest stable c_d Δt / h of each material [–].
     stable_number: Vec<f64>,
-    /// More nodes than this mean that material has left [–].
-    most_nodes: usize,
     state: State,
     // What follows is made anew in every step.
     division: Division,
+    /// The nodes that particles reach; none before the first step.
+    grid: Grid,
     nodes: Nodes,
     order: RowOrder,
     cut: Cut,
@@ -100,17 +102,12 @@ struct Motion {
     velocity_gradient: Matrix,
 }
 
-/// The grid may become so many times as large as at rest, and at least [`FEWEST_NODES`], before material counts as lost.
-const LARGEST_GRID: usize = 64;
-/// See [`LARGEST_GRID`].
-const FEWEST_NODES: usize = 4_000_000;
-
 impl Updated {
     /// Lays particles, crack points and outlines at rest, with their first velocities.
     ///
     /// # Errors
     /// When a load or support selects nothing.
-    pub(crate) fn new(scene: &Scene, particles: Particles, cracks: &[Crack]) -> Result<Self, SimulationError> {
+    pub(crate) fn new(scene: &Scene, particles: Arc<Particles>, cracks: &[Crack]) -> Result<Self, SimulationError> {
         let count = particles.len();
         let points = particles
             .rest
@@ -141,7 +138,7 @@ impl Updated {
     /// When a load or support selects nothing.
     pub(crate) fn take_over(
         scene: &Scene,
-        particles: Particles,
+        particles: Arc<Particles>,
         cracks: &[Crack],
         handover: Handover,
     ) -> Result<Self, SimulationError> {
@@ -164,7 +161,7 @@ impl Updated {
     /// [`SimulationError::BadState`] when the bytes are damaged or belong to another scene.
     pub(crate) fn restore(
         scene: &Scene,
-        particles: Particles,
+        particles: Arc<Particles>,
         cracks: &[Crack],
         bytes: &[u8],
     ) -> Result<Self, SimulationError> {
@@ -179,12 +176,9 @@ impl Updated {
         Self::around(scene, particles, state)
     }
 
-    fn around(scene: &Scene, particles: Particles, state: State) -> Result<Self, SimulationError> {
+    fn around(scene: &Scene, particles: Arc<Particles>, state: State) -> Result<Self, SimulationError> {
         let elastic: Vec<Elastic> = scene.materials.iter().map(|m| Elastic::new(m, scene.plane)).collect();
         let stable_number = elastic.iter().map(|e| stability::stable_number(scene, e)).collect();
-        let (low, high) = fissure_scene::bounds(&particles.rest);
-        let cells = (high - low) / scene.cell_size;
-        let most_nodes = (LARGEST_GRID * (cells.x as usize + 8) * (cells.y as usize + 8)).max(FEWEST_NODES);
         let mut solver = Self {
             settings: scene.solver,
             elastic,
@@ -192,7 +186,6 @@ impl Updated {
             loads: Vec::new(),
             held: Vec::new(),
             stable_number,
-            most_nodes,
             state,
             division: Division::new(
                 &[],
@@ -202,6 +195,7 @@ impl Updated {
                 scene.particle_spacing,
                 0.0,
             ),
+            grid: Grid::default(),
             nodes: Nodes::default(),
             order: RowOrder::default(),
             cut: Cut::default(),

@@ -4,16 +4,20 @@ use super::Updated;
 use crate::SimulationError;
 use crate::crack::Crack;
 use crate::division::CrossedSet;
-use crate::grid::Grid;
+use crate::grid::{Grid, Walker};
 use crate::kernel::{self, Stencil};
-use fissure_scene::{Point, Vector};
+use crate::spans::{Span, SpanRows};
+use fissure_scene::{Kernel, Point, Vector};
 use rayon::prelude::*;
 
 /// No particle, no field, no row.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// Nodes beyond the box around the particles: the cubic kernel reaches two, the rest is for outlines and crack points.
+/// Cells by which node (0, 0) lies below and to the left of all particles: more than any kernel reaches.
 const MARGIN: i64 = 4;
+
+/// Cells by which nodes reach beyond the particles' stencils, so that they serve while particles move on by as much.
+const ROOM: i32 = 1;
 
 /// Least weight of the bilinear kernel along an axis.
 const LEAST_WEIGHT: f64 = 1e-12;
@@ -24,8 +28,6 @@ pub(super) const PARALLEL_PARTICLES: usize = 8_000;
 /// Values at fields: the own field of node i has number i, the further fields of all nodes follow.
 #[derive(Debug, Default)]
 pub(super) struct Nodes {
-    /// The lattice; none before the first step.
-    pub(super) grid: Option<Grid>,
     /// m_i [kg/m].
     pub(super) mass: Vec<f64>,
     /// Momentum while it is gathered, then velocity at the beginning of the step [m/s]; x and y apart.
@@ -63,12 +65,59 @@ impl Nodes {
 /// Particles sorted by the lowest row of nodes that they reach; particles of one row stay in the order of their numbers.
 #[derive(Debug, Default)]
 pub(super) struct RowOrder {
-    /// Lowest row of each particle.
+    /// Index of the lowest row of each particle among the rows of the grid.
     row: Vec<u32>,
     /// First place in `particles` of each row; one more at the end.
     pub(super) first: Vec<u32>,
     /// Particles, row by row.
     pub(super) particles: Vec<u32>,
+}
+
+impl RowOrder {
+    /// Sorts by `row`, which is below `rows`.
+    fn sort(&mut self, rows: usize) {
+        self.first.clear();
+        self.first.resize(rows + 1, 0);
+        for &row in &self.row {
+            self.first[row as usize + 1] += 1;
+        }
+        for row in 0..rows {
+            self.first[row + 1] += self.first[row];
+        }
+        let mut next = self.first.clone();
+        self.particles.resize(self.row.len(), 0);
+        for (p, &row) in self.row.iter().enumerate() {
+            let place = &mut next[row as usize];
+            self.particles[*place as usize] = p as u32;
+            *place += 1;
+        }
+    }
+}
+
+/// Finds the lowest nodes of stencils on the lattice of a grid.
+#[derive(Debug, Clone, Copy)]
+struct Lowest {
+    kernel: Kernel,
+    half_size: f64,
+    origin: Point,
+    inverse_cell_size: f64,
+}
+
+impl Lowest {
+    fn new(solver: &Updated, grid: &Grid) -> Self {
+        Self {
+            kernel: solver.settings.kernel,
+            half_size: solver.half_size(),
+            origin: grid.origin,
+            inverse_cell_size: 1.0 / grid.cell_size,
+        }
+    }
+
+    #[inline(always)]
+    fn of(&self, place: Point) -> [i32; 2] {
+        let x = (place - self.origin) * self.inverse_cell_size;
+        [x.x, x.y].map(|x| kernel::axis_stencil(self.kernel, self.half_size, x).first)
+    }
 }
 
 /// One (particle, field) pair of a divided stencil.
@@ -162,6 +211,8 @@ impl Cut {
 /// One pair of a divided stencil before its field has a number.
 struct Raw {
     node: u32,
+    /// Position of the node [m].
+    place: Point,
     crossed: CrossedSet,
     weight: f64,
     gradient: Vector,
@@ -180,20 +231,33 @@ impl Updated {
             (low, high) = (low.inf(&p.position), high.sup(&p.position));
         }
         let h = self.scene.cell_size;
-        let cells = (high - low) / h;
-        if (cells.x + 8.0) * (cells.y + 8.0) > self.most_nodes as f64 {
+        let Some(grid) = Grid::around(self.particles.anchor, low, high, h, MARGIN) else {
             return Err(self.left(time));
+        };
+        let mut before = std::mem::replace(&mut self.grid, grid);
+        let is_same_lattice = self.grid.take_nodes(&mut before);
+        if !(is_same_lattice && self.sort_rows()) {
+            self.lay_nodes();
+            if !self.sort_rows() {
+                return Err(self.left(time));
+            }
         }
-        let grid = Grid::around(self.particles.anchor, low, high, h, MARGIN);
-        self.nodes.grid = Some(grid);
-        self.sort_rows(grid);
-        self.cut.nodes = grid.len();
+        self.cut.nodes = self.grid.len();
         if self.has_cracks() {
             self.division = self.division_now(cracks);
-            self.divide_stencils(grid);
+            self.divide_stencils();
         }
-        self.nodes.clear(self.cut.fields(grid.len()));
+        self.nodes.clear(self.cut.fields(self.grid.len()));
         Ok(())
+    }
+
+    /// Makes the nodes around the particles.
+    fn lay_nodes(&mut self) {
+        let mut grid = std::mem::take(&mut self.grid);
+        let lattice = Lowest::new(self, &grid);
+        let lowest = self.state.points.iter().map(|p| lattice.of(p.position));
+        grid.lay(lowest, kernel::width(self.settings.kernel), ROOM);
+        self.grid = grid;
     }
 
     /// The particle farthest from the middle of all has left.
@@ -219,21 +283,14 @@ impl Updated {
         }
     }
 
-    pub(super) fn grid(&self) -> Grid {
-        // A step lays the grid before anything asks for it; before the first step the one at rest does.
-        self.nodes.grid.unwrap_or_else(|| {
-            let (low, high) = fissure_scene::bounds(&self.particles.rest);
-            Grid::around(self.particles.anchor, low, high, self.scene.cell_size, MARGIN)
-        })
-    }
-
     /// Half the domain of a particle in cells, for GIMP; at most half a cell.
     pub(super) fn half_size(&self) -> f64 {
         (0.5 * self.particles.spacing / self.scene.cell_size).min(0.5)
     }
 
     #[inline(always)]
-    pub(super) fn stencil(&self, grid: &Grid, place: Point) -> Stencil {
+    pub(super) fn stencil(&self, place: Point) -> Stencil {
+        let grid = &self.grid;
         let inverse = 1.0 / grid.cell_size;
         let x = (place - grid.origin) * inverse;
         let mut stencil = Stencil::new(self.settings.kernel, self.half_size(), [x.x, x.y], inverse);
@@ -248,46 +305,36 @@ impl Updated {
         stencil
     }
 
-    fn sort_rows(&mut self, grid: Grid) {
-        let (kernel, half_size) = (self.settings.kernel, self.half_size());
-        let inverse = 1.0 / grid.cell_size;
-        let order = &mut self.order;
-        let points = &self.state.points;
-        let same_shape = order.row.len() == points.len() && order.first.len() == grid.rows + 1;
+    /// Sorts the particles by rows. Whether the grid has all nodes that they reach; if not, nothing is sorted.
+    fn sort_rows(&mut self) -> bool {
+        let lattice = Lowest::new(self, &self.grid);
+        let width = kernel::width(self.settings.kernel);
+        let (grid, order, points) = (&self.grid, &mut self.order, &self.state.points);
+        let mut changed = order.row.len() != points.len() || order.first.len() != grid.rows() + 1;
         order.row.resize(points.len(), 0);
-        let mut changed = !same_shape;
+        let mut walker = Walker::new(grid);
         for (row, p) in order.row.iter_mut().zip(points) {
-            let now = kernel::axis_stencil(kernel, half_size, (p.position.y - grid.origin.y) * inverse).first as u32;
-            changed |= *row != now;
-            *row = now;
+            let Some(now) = walker.lowest_row(lattice.of(p.position), width) else {
+                // What follows sorts anew.
+                order.first.clear();
+                return false;
+            };
+            changed |= *row != now as u32;
+            *row = now as u32;
         }
         // Stiff bodies keep their rows for many steps.
-        if !changed {
-            return;
+        if changed {
+            order.sort(grid.rows());
         }
-        order.first.clear();
-        order.first.resize(grid.rows + 1, 0);
-        for &row in &order.row {
-            order.first[row as usize + 1] += 1;
-        }
-        for row in 0..grid.rows {
-            order.first[row + 1] += order.first[row];
-        }
-        let mut next = order.first.clone();
-        order.particles.resize(points.len(), 0);
-        for (p, &row) in order.row.iter().enumerate() {
-            let place = &mut next[row as usize];
-            order.particles[*place as usize] = p as u32;
-            *place += 1;
-        }
+        true
     }
 
     /// Finds the particles whose stencils cracks divide, and divides them.
-    fn divide_stencils(&mut self, grid: Grid) {
+    fn divide_stencils(&mut self) {
         let mut cut = std::mem::take(&mut self.cut);
         cut.further.clear();
         cut.head.clear();
-        cut.head.resize(grid.len(), NONE);
+        cut.head.resize(self.grid.len(), NONE);
         cut.particles.clear();
         cut.row.clear();
         cut.row.resize(self.particles.len(), NONE);
@@ -296,17 +343,15 @@ impl Updated {
             if !near.holds(point.position) {
                 continue;
             }
-            let stencil = self.stencil(&grid, point.position);
-            let corner = |i: i32, j: i32| grid.origin + Vector::new(f64::from(i), f64::from(j)) * grid.cell_size;
-            let low = corner(stencil.first[0], stencil.first[1]);
-            let last = stencil.width as i32 - 1;
-            let high = corner(stencil.first[0] + last, stencil.first[1] + last);
+            let stencil = self.stencil(point.position);
+            let low = self.grid.place(stencil.first);
+            let high = self.grid.place(stencil.first.map(|first| first + stencil.width as i32 - 1));
             if self.division.may_divide(point.position, low, high) {
                 cut.row[p] = cut.particles.len() as u32;
                 cut.particles.push(p as u32);
             }
         }
-        let raw = |p: &u32| self.divided(&grid, *p as usize);
+        let raw = |p: &u32| self.divided(*p as usize);
         let raws: Vec<Vec<Raw>> = if cut.particles.len() < PARALLEL_PARTICLES / 32 {
             cut.particles.iter().map(raw).collect()
         } else {
@@ -330,7 +375,7 @@ impl Updated {
                     field: field as u32,
                     weight: raw.weight,
                     gradient: raw.gradient,
-                    arm: grid.position(raw.node as usize) - place,
+                    arm: raw.place - place,
                 });
             }
         }
@@ -338,15 +383,16 @@ impl Updated {
         self.cut = cut;
     }
 
-    fn divided(&self, grid: &Grid, particle: usize) -> Vec<Raw> {
+    fn divided(&self, particle: usize) -> Vec<Raw> {
         let place = self.state.points[particle].position;
-        let stencil = self.stencil(grid, place);
+        let stencil = self.stencil(place);
+        let nodes = self.grid.stencil(&stencil);
         let mut raws = Vec::with_capacity(stencil.width * stencil.width + 4);
         for b in 0..stencil.width {
             for a in 0..stencil.width {
                 let (w, g) = (stencil.weight(a, b), stencil.weight_gradient(a, b));
-                let node = stencil_node(grid, &stencil, a, b);
-                let node_place = grid.position(node);
+                let Some(node) = nodes.at(a, b) else { continue };
+                let node_place = self.grid.place([stencil.first[0] + a as i32, stencil.first[1] + b as i32]);
                 for share in self.division.pair(place, node_place) {
                     let normals = if self.settings.crack_contact && !share.crossed.is_empty() {
                         self.crossed_normals(place, node_place, &share.crossed)
@@ -355,6 +401,7 @@ impl Updated {
                     };
                     raws.push(Raw {
                         node: node as u32,
+                        place: node_place,
                         weight: w * share.fraction,
                         gradient: g * share.fraction + share.gradient * w,
                         crossed: share.crossed,
@@ -384,40 +431,26 @@ impl Updated {
     }
 }
 
-/// Number of node (a, b) of a stencil. Particles never reach beyond the grid; crack points and outlines may, and then see its edge.
-pub(super) fn stencil_node(grid: &Grid, stencil: &Stencil, a: usize, b: usize) -> usize {
-    let column = (stencil.first[0] + a as i32).clamp(0, grid.columns as i32 - 1) as usize;
-    let row = (stencil.first[1] + b as i32).clamp(0, grid.rows as i32 - 1) as usize;
-    row * grid.columns + column
-}
-
-/// The cells near cracks as a dense map, for a question that every particle asks.
+/// The cells near cracks, for a question that every particle asks.
 struct NearCells {
-    first: [i64; 2],
-    columns: i64,
-    rows: i64,
-    near: Vec<bool>,
+    spans: SpanRows,
     inverse_cell_size: f64,
 }
 
 impl NearCells {
     fn new(solver: &Updated) -> Self {
-        let (mut low, mut high) = ([i64::MAX; 2], [i64::MIN; 2]);
-        for (i, j) in solver.division.near_cells() {
-            low = [low[0].min(i), low[1].min(j)];
-            high = [high[0].max(i), high[1].max(j)];
+        let mut cells: Vec<(i32, i32)> = solver.division.near_cells().map(|(i, j)| (j as i32, i as i32)).collect();
+        cells.sort_unstable();
+        let mut spans = SpanRows::default();
+        for run in cells.chunk_by(|a, b| a.0 == b.0 && a.1 + 1 == b.1) {
+            let (row, first) = run[0];
+            spans.push(row, Span { first, end: first + run.len() as i32, number: 0 });
         }
-        let (columns, rows) = ((high[0] - low[0] + 1).max(0), (high[1] - low[1] + 1).max(0));
-        let mut near = vec![false; (columns * rows) as usize];
-        for (i, j) in solver.division.near_cells() {
-            near[((j - low[1]) * columns + i - low[0]) as usize] = true;
-        }
-        Self { first: low, columns, rows, near, inverse_cell_size: 1.0 / solver.scene.cell_size }
+        Self { spans, inverse_cell_size: 1.0 / solver.scene.cell_size }
     }
 
     fn holds(&self, point: Point) -> bool {
-        let i = (point.x * self.inverse_cell_size).floor() as i64 - self.first[0];
-        let j = (point.y * self.inverse_cell_size).floor() as i64 - self.first[1];
-        i >= 0 && j >= 0 && i < self.columns && j < self.rows && self.near[(j * self.columns + i) as usize]
+        let x = point.coords * self.inverse_cell_size;
+        self.spans.number(x.x.floor() as i32, x.y.floor() as i32).is_some()
     }
 }

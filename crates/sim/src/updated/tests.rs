@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
 
 use super::*;
-use crate::test_scenes::{add_crack, always, free_body, rectangle, set_motion};
+use crate::test_scenes::{add_body, add_crack, always, free_body, rectangle, set_motion};
 use fissure_scene::{BoxSide, CrackEnd, Kernel, Load, LoadKind, Plasticity, Selection, Support, TipDivision};
 
 const KERNELS: [Kernel; 4] = [Kernel::Bilinear, Kernel::Gimp, Kernel::Quadratic, Kernel::Cubic];
@@ -18,7 +18,7 @@ impl Run {
     fn new(scene: &Scene) -> Self {
         let particles = Particles::fill(scene).unwrap();
         let cracks = Crack::of_scene(scene);
-        Self { solver: Updated::new(scene, particles, &cracks).unwrap(), cracks, time: 0.0 }
+        Self { solver: Updated::new(scene, Arc::new(particles), &cracks).unwrap(), cracks, time: 0.0 }
     }
 
     fn steps(&mut self, count: usize, time_step: f64) {
@@ -376,12 +376,12 @@ fn a_saved_state_goes_on_bit_for_bit() {
     let time_step = 0.3 * run.solver.stable_time_step();
     run.steps(15, time_step);
     let bytes = run.solver.save();
-    let restored = Updated::restore(&scene, Particles::fill(&scene).unwrap(), &run.cracks, &bytes).unwrap();
+    let restored = Updated::restore(&scene, Arc::new(Particles::fill(&scene).unwrap()), &run.cracks, &bytes).unwrap();
     let mut other = Run { solver: restored, cracks: run.cracks.clone(), time: run.time };
     run.steps(15, time_step);
     other.steps(15, time_step);
     assert_eq!(run.solver.save(), other.solver.save());
-    assert!(Updated::restore(&scene, Particles::fill(&scene).unwrap(), &run.cracks, &bytes[..99]).is_err());
+    assert!(Updated::restore(&scene, Arc::new(Particles::fill(&scene).unwrap()), &run.cracks, &bytes[..99]).is_err());
 }
 
 #[test]
@@ -495,5 +495,22 @@ fn rates() {
                 });
             }
         }
+    }
+}
+
+/// Truth: the construction. Two plates have the nodes of one twice, also while one flies away from the other.
+#[test]
+fn nodes_go_with_the_material_wherever_it_flies() {
+    let mut scene = free_body(rectangle([0.0, 0.0], [4.0, 4.0]), 0.125);
+    let mut alone = Run::new(&scene);
+    alone.solver.lay_grid(&alone.cracks, 0.0).unwrap();
+    add_body(&mut scene, [100.0, 70.0]);
+    let mut both = Run::new(&scene);
+    for _ in 0..4 {
+        both.solver.lay_grid(&both.cracks, 0.0).unwrap();
+        let (nodes, once) = (both.solver.grid.len(), alone.solver.grid.len());
+        assert!(nodes < 2 * once + 300, "{nodes} {once}");
+        let count = both.solver.state.points.len();
+        both.solver.state.points[count / 2..].iter_mut().for_each(|p| p.position += Vector::new(1e4, 3e4 + 0.1));
     }
 }

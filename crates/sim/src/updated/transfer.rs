@@ -1,6 +1,6 @@
 //! The loops between particles and grid, and nothing else.
 //!
-//! Particles go to the grid by bands of rows of nodes. A band and the rows its particles reach above it lie in one piece of memory, and the pieces of
+//! Particles go to the grid by bands of rows of nodes. A band and the one its particles reach above it lie in one piece of memory, and the pieces of
 //! every other band do not touch: all even bands at once, then all odd ones. The order of additions at a node is
 //! then the same for any number of threads.
 
@@ -10,22 +10,31 @@ use super::stencils::{Cut, Nodes, PARALLEL_PARTICLES};
 use super::{MaterialPoint, Motion, PlasticPart, Updated};
 use crate::SimulationError;
 use crate::collider::PlacedObstacle;
-use crate::grid::Grid;
+use crate::grid::{BAND, Walker, pieces};
 use crate::kernel;
 use fissure_scene::{Kernel, Matrix, Transfer, Vector};
 use rayon::prelude::*;
+use std::ops::Range;
 
-/// Rows of nodes in a band: at least one less than the widest kernel reaches.
-const BAND: usize = 4;
 /// Particles that one task takes on the way back from the grid.
 const CHUNK: usize = 1024;
 
-/// The rows of nodes that the particles of one band reach.
-struct Band<'a> {
-    first_row: usize,
+/// The nodes that the particles of one band reach.
+struct Piece<'a> {
+    /// Index of the band.
+    band: usize,
+    /// Its first node.
+    start: usize,
     mass: &'a mut [f64],
     momentum: [&'a mut [f64]; 2],
     force: [&'a mut [f64]; 2],
+}
+
+/// The same, for the momentum alone.
+struct MomentumPiece<'a> {
+    band: usize,
+    start: usize,
+    momentum: [&'a mut [f64]; 2],
 }
 
 /// What a particle gathers from the grid.
@@ -152,51 +161,63 @@ impl Updated {
         self.particles.len() >= PARALLEL_PARTICLES && rayon::current_num_threads() > 1
     }
 
+    /// Every other band, with the nodes that its particles reach: none shares a node with another.
+    fn bands(&self, parity: usize) -> impl Iterator<Item = (usize, Range<usize>)> + Clone {
+        let bands = (0..self.grid.bands()).filter(move |&band| self.grid.band(band).rem_euclid(2) as usize == parity);
+        bands.map(|band| (band, self.grid.nodes_reached_from(band)))
+    }
+
+    /// The particles whose lowest nodes are in a band, row by row.
+    fn particles_of_band(&self, band: usize) -> &[u32] {
+        let rows = &self.order.first;
+        &self.order.particles[rows[band * BAND] as usize..rows[(band + 1) * BAND] as usize]
+    }
+
     fn all_bands<const W: usize>(&self, nodes: &mut Nodes) {
-        let grid = self.grid_of(nodes);
-        let (piece, len) = (2 * BAND * grid.columns, grid.len());
         for parity in 0..2 {
-            let range = (parity * BAND * grid.columns).min(len)..len;
+            let bands = self.bands(parity);
+            let ranges = || bands.clone().map(|(_, nodes)| nodes);
             let [px, py] = &mut nodes.before;
             let [fx, fy] = &mut nodes.after;
-            let mut bands: Vec<Band<'_>> = nodes.mass[range.clone()]
-                .chunks_mut(piece)
-                .zip(px[range.clone()].chunks_mut(piece))
-                .zip(py[range.clone()].chunks_mut(piece))
-                .zip(fx[range.clone()].chunks_mut(piece))
-                .zip(fy[range].chunks_mut(piece))
-                .enumerate()
-                .map(|(k, ((((mass, px), py), fx), fy))| Band {
-                    first_row: (2 * k + parity) * BAND,
+            let mut all: Vec<Piece<'_>> = pieces(&mut nodes.mass, ranges())
+                .zip(pieces(px, ranges()))
+                .zip(pieces(py, ranges()))
+                .zip(pieces(fx, ranges()))
+                .zip(pieces(fy, ranges()))
+                .zip(bands.clone())
+                .map(|(((((mass, px), py), fx), fy), (band, nodes))| Piece {
+                    band,
+                    start: nodes.start,
                     mass,
                     momentum: [px, py],
                     force: [fx, fy],
                 })
                 .collect();
-            let run = |band: &mut Band<'_>| match self.state.affine.is_empty() {
-                true => self.band_to_grid::<W, false>(&grid, band),
-                false => self.band_to_grid::<W, true>(&grid, band),
+            let run = |piece: &mut Piece<'_>| match self.state.affine.is_empty() {
+                true => self.band_to_grid::<W, false>(piece),
+                false => self.band_to_grid::<W, true>(piece),
             };
             if self.is_parallel() {
-                bands.par_iter_mut().for_each(run);
+                all.par_iter_mut().for_each(run);
             } else {
-                bands.iter_mut().for_each(run);
+                all.iter_mut().for_each(run);
             }
         }
     }
 
-    fn band_to_grid<const W: usize, const AFFINE: bool>(&self, grid: &Grid, band: &mut Band<'_>) {
-        let rows = &self.order.first;
-        let (from, to) = (band.first_row.min(grid.rows), (band.first_row + BAND).min(grid.rows));
-        let particles = &self.order.particles[rows[from] as usize..rows[to] as usize];
+    fn band_to_grid<const W: usize, const AFFINE: bool>(&self, piece: &mut Piece<'_>) {
+        let grid = &self.grid;
         let h = grid.cell_size;
-        for &p in particles {
+        let mut walker = Walker::new(grid);
+        for &p in self.particles_of_band(piece.band) {
             let p = p as usize;
             if self.cut.entries_of(p).is_some() {
                 continue;
             }
             let point = &self.state.points[p];
-            let stencil = self.stencil(grid, point.position);
+            let stencil = self.stencil(point.position);
+            // The grid has been laid for all stencils.
+            let Some(rows) = walker.rows(stencil.first, W) else { continue };
             let m = self.particles.mass[p];
             let tension = self.stress_times_volume(p, point);
             let x: [f64; W] = first(&stencil.weight[0]);
@@ -208,25 +229,24 @@ impl Updated {
                 affine = self.state.affine[p];
             }
             let arm_y: [f64; W] = arms(stencil.first[1], grid.origin.y, h, point.position.y);
-            let mut at = (stencil.first[1] as usize - band.first_row) * grid.columns + stencil.first[0] as usize;
             for b in 0..W {
+                let at = rows[b] - piece.start;
                 let (wy, gy) = (stencil.weight[1][b], stencil.gradient[1][b]);
                 let mw = m * wy;
-                add::<W>(band.mass, at, |a| mw * x[a]);
+                add::<W>(piece.mass, at, |a| mw * x[a]);
                 for axis in 0..2 {
                     let v = point.velocity[axis];
                     if AFFINE {
                         let v = v + affine[(axis, 1)] * arm_y[b];
-                        add::<W>(band.momentum[axis], at, |a| mw * x[a] * (v + affine[(axis, 0)] * arm_x[a]));
+                        add::<W>(piece.momentum[axis], at, |a| mw * x[a] * (v + affine[(axis, 0)] * arm_x[a]));
                     } else {
                         let mv = mw * v;
-                        add::<W>(band.momentum[axis], at, |a| mv * x[a]);
+                        add::<W>(piece.momentum[axis], at, |a| mv * x[a]);
                     }
                     // f_i −= V_p0 τ_p ∇w_ip.
                     let (t1, t2) = (tension[(axis, 0)] * wy, tension[(axis, 1)] * gy);
-                    add::<W>(band.force[axis], at, |a: usize| -(t1 * dx[a] + t2 * x[a]));
+                    add::<W>(piece.force[axis], at, |a: usize| -(t1 * dx[a] + t2 * x[a]));
                 }
-                at += grid.columns;
             }
         }
     }
@@ -281,44 +301,46 @@ impl Updated {
 
     /// S⁺ S v: the beginning's velocities, sent to the particles and back.
     fn smooth_velocities(&mut self) {
-        let grid = self.grid();
         let wanted = Wanted { before: true, affine: false, smoothed: false };
-        let velocities = self.for_particles(|p| self.gather_any(&grid, p, wanted).before);
+        let velocities = self.for_particles(|walker, p| self.gather_any(walker, p, wanted).before);
         self.nodes.smoothed = self.mean_on_grid(&velocities);
     }
 
     /// What `value` gives for each particle.
-    fn for_particles<T: Send>(&self, value: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
+    fn for_particles<T: Send>(&self, value: impl Fn(&mut Walker<'_>, usize) -> T + Send + Sync) -> Vec<T> {
+        let particles = 0..self.particles.len();
         if self.is_parallel() {
-            (0..self.particles.len()).into_par_iter().map(value).collect()
+            particles.into_par_iter().map_init(|| Walker::new(&self.grid), value).collect()
         } else {
-            (0..self.particles.len()).map(value).collect()
+            let mut walker = Walker::new(&self.grid);
+            particles.map(|p| value(&mut walker, p)).collect()
         }
     }
 
     /// Mean of the `velocities` of the particles at each field.
     fn mean_on_grid(&self, velocities: &[Vector]) -> [Vec<f64>; 2] {
-        let grid = self.grid();
         let mut momentum = [vec![0.0; self.nodes.mass.len()], vec![0.0; self.nodes.mass.len()]];
-        let (piece, len) = (2 * BAND * grid.columns, grid.len());
-        let rows = &self.order.first;
         for parity in 0..2 {
-            let range = (parity * BAND * grid.columns).min(len)..len;
+            let bands = self.bands(parity);
+            let ranges = || bands.clone().map(|(_, nodes)| nodes);
             let [px, py] = &mut momentum;
-            let mut bands: Vec<_> =
-                px[range.clone()].chunks_mut(piece).zip(py[range].chunks_mut(piece)).enumerate().collect();
-            let to_band = |(k, (px, py)): &mut (usize, (&mut [f64], &mut [f64]))| {
-                let first_row = (2 * *k + parity) * BAND;
-                let (from, to) = (first_row.min(grid.rows), (first_row + BAND).min(grid.rows));
-                for &p in &self.order.particles[rows[from] as usize..rows[to] as usize] {
+            let mut all: Vec<MomentumPiece<'_>> = pieces(px, ranges())
+                .zip(pieces(py, ranges()))
+                .zip(bands.clone())
+                .map(|((px, py), (band, nodes))| MomentumPiece { band, start: nodes.start, momentum: [px, py] })
+                .collect();
+            let to_band = |piece: &mut MomentumPiece<'_>| {
+                let [px, py] = &mut piece.momentum;
+                let mut walker = Walker::new(&self.grid);
+                for &p in self.particles_of_band(piece.band) {
                     let p = p as usize;
                     if self.cut.entries_of(p).is_some() {
                         continue;
                     }
-                    let point = &self.state.points[p];
-                    let stencil = self.stencil(&grid, point.position);
+                    let stencil = self.stencil(self.state.points[p].position);
+                    let Some(rows) = walker.rows(stencil.first, stencil.width) else { continue };
                     for b in 0..stencil.width {
-                        let at = (stencil.first[1] as usize + b - first_row) * grid.columns + stencil.first[0] as usize;
+                        let at = rows[b] - piece.start;
                         for a in 0..stencil.width {
                             let v = velocities[p];
                             let mw = self.particles.mass[p] * stencil.weight(a, b);
@@ -329,9 +351,9 @@ impl Updated {
                 }
             };
             if self.is_parallel() {
-                bands.par_iter_mut().for_each(to_band);
+                all.par_iter_mut().for_each(to_band);
             } else {
-                bands.iter_mut().for_each(to_band);
+                all.iter_mut().for_each(to_band);
             }
         }
         for &p in &self.cut.particles {
@@ -356,11 +378,10 @@ impl Updated {
     /// A particle that has just entered a cell reaches its far nodes with a weight w → 0 but a gradient of 1/h, so that their velocity f Δt/m
     /// grows as 1/w and would turn the particle inside out. Wider kernels have gradients that vanish with the weight.
     fn remap_velocities(&mut self, time: f64, time_step: f64) {
-        let grid = self.grid();
         let wanted = Wanted::of(self.settings.transfer, self.settings.kernel);
         let obstacles: Vec<PlacedObstacle<'_>> = self.colliders.iter().map(|c| c.at(time + 0.5 * time_step)).collect();
-        let mut velocities = self.for_particles(|p| {
-            let g = self.gather_any(&grid, p, wanted);
+        let mut velocities = self.for_particles(|walker, p| {
+            let g = self.gather_any(walker, p, wanted);
             let point = &self.state.points[p];
             let v = self.transferred(point.velocity, &g);
             obstacles.iter().fold(v, |v, o| o.resolve(v, point.position))
@@ -390,51 +411,53 @@ impl Updated {
     }
 
     /// Calls `visit` with (field, weight) for every entry of the stencil of a particle.
-    pub(super) fn for_each_entry(&self, grid: &Grid, particle: usize, mut visit: impl FnMut(usize, f64)) {
+    pub(super) fn for_each_entry(&self, particle: usize, mut visit: impl FnMut(usize, f64)) {
         if let Some(entries) = self.cut.entries_of(particle) {
             for e in entries {
                 visit(e.field as usize, e.weight);
             }
             return;
         }
-        let stencil = self.stencil(grid, self.state.points[particle].position);
+        let stencil = self.stencil(self.state.points[particle].position);
+        let nodes = self.grid.stencil(&stencil);
         for b in 0..stencil.width {
             for a in 0..stencil.width {
-                visit(super::stencils::stencil_node(grid, &stencil, a, b), stencil.weight(a, b));
+                // Those of a particle all exist.
+                if let Some(node) = nodes.at(a, b) {
+                    visit(node, stencil.weight(a, b));
+                }
             }
         }
     }
 
-    fn grid_of(&self, nodes: &Nodes) -> Grid {
-        nodes.grid.unwrap_or_else(|| self.grid())
-    }
-
     /// What the particle gathers at its place at the beginning of the step.
     pub(super) fn gather_at_particle(&self, particle: usize) -> Gathered {
-        self.gather_any(&self.grid(), particle, Wanted { before: true, affine: false, smoothed: false })
+        let wanted = Wanted { before: true, affine: false, smoothed: false };
+        self.gather_any(&mut Walker::new(&self.grid), particle, wanted)
     }
 
-    fn gather_any(&self, grid: &Grid, particle: usize, wanted: Wanted) -> Gathered {
+    fn gather_any(&self, walker: &mut Walker<'_>, particle: usize, wanted: Wanted) -> Gathered {
         let point = &self.state.points[particle];
         match kernel::width(self.settings.kernel) {
-            2 => self.gather::<2>(grid, &self.cut, particle, point, wanted),
-            3 => self.gather::<3>(grid, &self.cut, particle, point, wanted),
-            _ => self.gather::<4>(grid, &self.cut, particle, point, wanted),
+            2 => self.gather::<2>(walker, &self.cut, particle, point, wanted),
+            3 => self.gather::<3>(walker, &self.cut, particle, point, wanted),
+            _ => self.gather::<4>(walker, &self.cut, particle, point, wanted),
         }
     }
 
     #[inline(always)]
     fn gather<const W: usize>(
         &self,
-        grid: &Grid,
+        walker: &mut Walker<'_>,
         cut: &Cut,
         particle: usize,
         point: &MaterialPoint,
         wanted: Wanted,
     ) -> Gathered {
+        let grid = &self.grid;
         let h = grid.cell_size;
         let nodes = &self.nodes;
-        let stencil = self.stencil(grid, point.position);
+        let stencil = self.stencil(point.position);
         let arm_x: [f64; W] = arms(stencil.first[0], grid.origin.x, h, point.position.x);
         let arm_y: [f64; W] = arms(stencil.first[1], grid.origin.y, h, point.position.y);
         if let Some(entries) = cut.entries_of(particle) {
@@ -448,9 +471,10 @@ impl Updated {
         } else {
             ([0.0; W], [0.0; W])
         };
-        let column = stencil.first[0] as usize;
+        // The grid has been laid for all stencils.
+        let rows = walker.rows(stencil.first, W).unwrap_or_default();
         for b in 0..W {
-            let at = (stencil.first[1] as usize + b) * grid.columns + column;
+            let at = rows[b];
             let (wy, gy) = (stencil.weight[1][b], stencil.gradient[1][b]);
             for axis in 0..2 {
                 let v = along(&nodes.after[axis], at, &x);
@@ -594,14 +618,14 @@ impl Updated {
     }
 
     fn task<const W: usize>(&self, task: Task<'_>, obstacles: &[PlacedObstacle<'_>], time_step: f64) -> Report {
-        let grid = self.grid();
+        let mut walker = Walker::new(&self.grid);
         let mut wanted = Wanted::of(self.settings.transfer, self.settings.kernel);
         wanted.before |= !task.motion.is_empty();
-        let farthest = grid.cell_size * grid.cell_size;
+        let farthest = self.grid.cell_size * self.grid.cell_size;
         let mut report = Report::default();
         for (k, point) in task.points.iter_mut().enumerate() {
             let p = task.first + k;
-            let g = self.gather::<W>(&grid, &self.cut, p, point, wanted);
+            let g = self.gather::<W>(&mut walker, &self.cut, p, point, wanted);
             if let Some(motion) = task.motion.get_mut(k) {
                 *motion = g.motion(time_step);
             }
@@ -636,7 +660,7 @@ impl Updated {
                 let failure = match finite {
                     false => Failure::NotFinite,
                     true if ratio <= 0.0 => Failure::Inverted(ratio),
-                    true => Failure::TooFast(motion.norm() / grid.cell_size),
+                    true => Failure::TooFast(motion.norm() / self.grid.cell_size),
                 };
                 report.failure = Some((p, failure));
             }
