@@ -1,10 +1,9 @@
 //! Why a stage stopped, with what the user can do about it.
 
 use crate::exit::Exit;
+use fissure_files::FileError;
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
 use std::fmt::Display;
-use std::io;
-use std::path::Path;
 
 /// An error as the user sees it.
 #[derive(Debug, thiserror::Error)]
@@ -34,11 +33,6 @@ impl Failure {
         Self { exit, message: message.into(), remedy: Some(remedy.into()), snippet: None }
     }
 
-    /// A file that cannot be read or written: `doing` says what was tried, e.g. "write".
-    pub(crate) fn file(doing: &str, path: &Path, error: &io::Error) -> Self {
-        Self::new(Exit::File, format!("cannot {doing} `{}`: {error}", path.display()), file_remedy(error))
-    }
-
     /// The same failure, said of a larger task.
     pub(crate) fn during(mut self, task: impl Display) -> Self {
         self.message = format!("{task}: {}", self.message);
@@ -46,20 +40,9 @@ impl Failure {
     }
 }
 
-/// What to do about an error of the file system.
-pub(crate) fn file_remedy(error: &io::Error) -> &'static str {
-    match error.kind() {
-        io::ErrorKind::NotFound => "check the path; relative paths start at the current folder",
-        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
-            "choose a folder you may write to with --output, or change its permissions"
-        }
-        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
-            "free some space or choose another disk with --output; then run the same command again, it resumes"
-        }
-        io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists | io::ErrorKind::IsADirectory => {
-            "a file is in the way of a folder (or the other way round); choose another place with --output"
-        }
-        _ => "check the disk and the path, then run the same command again",
+impl From<FileError> for Failure {
+    fn from(error: FileError) -> Self {
+        Self::new(Exit::File, error.to_string(), error.remedy())
     }
 }
 

@@ -5,16 +5,16 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::report::Report;
 use crate::workers::contain;
+use fissure_files::Folder;
 use fissure_post::{Manifest, PostError, PostOptions, Provenance, WriteError, post_frame, write_frame};
 use fissure_scene::{Format, Frame, Scene};
-use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 /// Makes the meshes of frames; shared by all workers.
 #[derive(Debug)]
 pub(crate) struct Mesher<'a> {
     scene: &'a Scene,
-    folder: PathBuf,
+    folder: Folder,
     options: PostOptions,
     formats: Vec<Format>,
     report: &'a Report,
@@ -32,7 +32,15 @@ struct Outcome {
 
 impl<'a> Mesher<'a> {
     /// Meshes as the scene says, except for what was typed.
-    pub(crate) fn new(scene: &'a Scene, folder: &Path, typed: &MeshArguments, report: &'a Report) -> Self {
+    ///
+    /// # Errors
+    /// When the folder holds a list of meshes that Fissure has not made.
+    pub(crate) fn new(
+        scene: &'a Scene,
+        folder: &Folder,
+        typed: &MeshArguments,
+        report: &'a Report,
+    ) -> Result<Self, Failure> {
         let mut options = PostOptions::from(&scene.output);
         if let Some(thickness) = typed.thickness {
             options.thickness = thickness;
@@ -44,7 +52,9 @@ impl<'a> Mesher<'a> {
             options.parts.clone_from(&typed.parts);
         }
         let formats = if typed.formats.is_empty() { &scene.output.formats } else { &typed.formats };
-        Self { scene, folder: folder.to_owned(), options, formats: formats.clone(), report, outcome: Mutex::default() }
+        let manifest = Manifest::read(folder, &scene.name, &scene.hash)?;
+        let outcome = Mutex::new(Outcome { manifest, ..Outcome::default() });
+        Ok(Self { scene, folder: folder.clone(), options, formats: formats.clone(), report, outcome })
     }
 
     /// Makes and writes the meshes of the frame that `get` gives. A failure is reported at once and remembered; the other frames go on.
@@ -90,25 +100,6 @@ impl<'a> Mesher<'a> {
     }
 }
 
-/// Removes the meshes that the manifest in `folder` lists, and the manifest; other files stay.
-pub(crate) fn remove(folder: &Path) -> Result<(), Failure> {
-    let path = folder.join("manifest.json");
-    let Ok(text) = std::fs::read(&path) else { return Ok(()) };
-    let manifest: serde_json::Value = serde_json::from_slice(&text).unwrap_or_default();
-    let files = manifest["files"].as_array().into_iter().flatten().filter_map(|record| record["file"].as_str());
-    // A manifest that was tampered with must not reach files elsewhere.
-    let plain = |name: &&str| Path::new(name).file_name().is_some_and(|file| file == *name);
-    for file in files.filter(plain).map(|name| folder.join(name)).chain([path.clone()]) {
-        match std::fs::remove_file(&file) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                return Err(Failure::file("remove", &file, &error));
-            }
-            _ => {}
-        }
-    }
-    Ok(())
-}
-
 impl From<PostError> for Failure {
     fn from(error: PostError) -> Self {
         let exit = match error {
@@ -122,10 +113,6 @@ impl From<PostError> for Failure {
 
 impl From<WriteError> for Failure {
     fn from(error: WriteError) -> Self {
-        Self::new(
-            Exit::File,
-            error.to_string(),
-            "free some space or fix the permissions, or choose another folder with --output",
-        )
+        Self::new(Exit::File, error.to_string(), error.remedy())
     }
 }

@@ -9,6 +9,7 @@ use crate::progress::MeshProgress;
 use crate::report::Report;
 use crate::threads;
 use crate::workers::{Work, stream};
+use fissure_files::Folder;
 use fissure_scene::Take;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -32,9 +33,10 @@ pub(crate) fn post(arguments: &PostArguments, report: &Report) -> Result<Exit, F
             arguments.take.canonicalize().ok().and_then(|path| path.parent().map(Path::to_owned)).unwrap_or_default()
         }
     };
-    std::fs::create_dir_all(&folder).map_err(|error| Failure::file("make the folder", &folder, &error))?;
+    let folder = Folder::new(folder);
+    folder.make()?;
     let interrupt = Interrupt::listen();
-    let mesher = Mesher::new(take.scene(), &folder, &arguments.mesh, report);
+    let mesher = Mesher::new(take.scene(), &folder, &arguments.mesh, report)?;
     let progress = Mutex::new(MeshProgress::new(report, numbers.len()));
     let work = |work: Work| {
         let Work::InTake(number) = work else { return };
@@ -51,7 +53,7 @@ pub(crate) fn post(arguments: &PostArguments, report: &Report) -> Result<Exit, F
         report.note("interrupted; run the same command again");
         return Ok(Exit::Interrupted);
     }
-    report.note(&format!("wrote the meshes of {} frames into `{}`", numbers.len(), folder.display()));
+    report.note(&format!("wrote the meshes of {} frames into `{}`", numbers.len(), folder.path().display()));
     Ok(Exit::Done)
 }
 

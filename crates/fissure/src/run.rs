@@ -3,7 +3,7 @@
 use crate::args::RunArguments;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::folder::Folder;
+use crate::folder::OutputFolder;
 use crate::interrupt::Interrupt;
 use crate::meshes::Mesher;
 use crate::report::Report;
@@ -16,13 +16,13 @@ use fissure_scene::Take;
 pub(crate) fn run(arguments: &RunArguments, report: &Report) -> Result<Exit, Failure> {
     let threads = threads::set(arguments.take.threads)?;
     let scene = scene_file::read(&arguments.scene, report)?;
-    let folder = Folder::of(&scene, &arguments.take);
+    let folder = OutputFolder::of(&scene, &arguments.take);
     let interrupt = Interrupt::listen();
     let wanted = |number: i64| arguments.frames.as_ref().is_none_or(|frames| frames.contains(number));
     let solve = solve::open(&scene, &folder, &arguments.take, arguments.frames.as_ref(), report)?;
-    let mesher = Mesher::new(&scene, &folder.root, &arguments.mesh, report);
+    let mesher = Mesher::new(&scene, &folder.root, &arguments.mesh, report)?;
     // Frames of an earlier run: their meshes may be missing or be of other options.
-    let take = Take::open(&folder.take())?;
+    let take = Take::open(folder.take.path())?;
     let earlier = solve.as_ref().map_or(i64::MAX, |solve| solve.first_new_frame());
     let backlog = take.frame_numbers().into_iter().filter(|&number| number < earlier && wanted(number));
     let work = |work: Work| match work {

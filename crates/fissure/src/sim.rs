@@ -3,7 +3,7 @@
 use crate::args::SimArguments;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::folder::Folder;
+use crate::folder::OutputFolder;
 use crate::interrupt::Interrupt;
 use crate::report::Report;
 use crate::solve;
@@ -13,7 +13,7 @@ use crate::{scene_file, threads};
 pub(crate) fn sim(arguments: &SimArguments, report: &Report) -> Result<Exit, Failure> {
     threads::set(arguments.take.threads)?;
     let scene = scene_file::read(&arguments.scene, report)?;
-    let folder = Folder::of(&scene, &arguments.take);
+    let folder = OutputFolder::of(&scene, &arguments.take);
     let interrupt = Interrupt::listen();
     let Some(solve) = solve::open(&scene, &folder, &arguments.take, arguments.frames.as_ref(), report)? else {
         return Ok(Exit::Done);

@@ -3,10 +3,9 @@
 use crate::args::TakeArguments;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::folder::Folder;
+use crate::folder::OutputFolder;
 use crate::frame_set::FrameSet;
 use crate::interrupt::Interrupt;
-use crate::meshes;
 use crate::progress::SimulationProgress;
 use crate::report::Report;
 use fissure_scene::{Frame, Provenance, Scene, Take, TakeError, TakeWriter};
@@ -46,21 +45,21 @@ pub(crate) struct Solve {
 /// When there is a take of another scene, or a file cannot be used.
 pub(crate) fn open(
     scene: &Scene,
-    folder: &Folder,
+    folder: &OutputFolder,
     arguments: &TakeArguments,
     frames: Option<&FrameSet>,
     report: &Report,
 ) -> Result<Option<Solve>, Failure> {
     let last = last_frame(scene, frames)?;
-    let path = folder.take();
+    let path = folder.take.path();
     if !path.exists() {
         return begin(scene, folder, last).map(Some);
     }
     if arguments.overwrite {
-        meshes::remove(&folder.root)?;
+        fissure_post::Manifest::remove_meshes(&folder.root, &scene.name)?;
         return begin(scene, folder, last).map(Some);
     }
-    let take = Take::open(&path)?;
+    let take = Take::open(path)?;
     if take.scene().hash != scene.hash {
         return Err(Failure::new(
             Exit::Usage,
@@ -72,7 +71,7 @@ pub(crate) fn open(
         report.note(&format!("`{}` holds all frames up to {last} already", path.display()));
         return Ok(None);
     }
-    let (writer, saved) = TakeWriter::resume(&path, scene, provenance())?;
+    let (writer, saved) = TakeWriter::resume(path, scene, provenance())?;
     let Some(saved) = saved else {
         // The run before ended before its first state was saved, or was one of another version.
         return begin(scene, folder, last).map(Some);
@@ -82,10 +81,10 @@ pub(crate) fn open(
     Ok(Some(Solve { simulation, writer, newest: saved.frame, last, fresh: false }))
 }
 
-fn begin(scene: &Scene, folder: &Folder, last: i64) -> Result<Solve, Failure> {
+fn begin(scene: &Scene, folder: &OutputFolder, last: i64) -> Result<Solve, Failure> {
     let simulation = Simulation::new(scene)?;
-    folder.make()?;
-    let mut writer = TakeWriter::create(&folder.take(), scene, provenance())?;
+    folder.root.make()?;
+    let mut writer = TakeWriter::create(folder.take.path(), scene, provenance())?;
     let frame = simulation.frame();
     writer.write_frame(&frame)?;
     Ok(Solve { simulation, writer, newest: frame.number, last, fresh: true })
@@ -175,12 +174,16 @@ impl Solve {
 }
 
 /// Says where things are, and how to go on if there is more to do.
-pub(crate) fn close(outcome: Outcome, folder: &Folder, interrupt: &Interrupt, report: &Report) -> Exit {
+pub(crate) fn close(outcome: Outcome, folder: &OutputFolder, interrupt: &Interrupt, report: &Report) -> Exit {
     if outcome == Outcome::Interrupted || interrupt.is_set() {
-        report.warn(&format!("interrupted; `{}` is readable. To go on: {}", folder.take().display(), same_command()));
+        report.warn(&format!(
+            "interrupted; `{}` is readable. To go on: {}",
+            folder.take.path().display(),
+            same_command()
+        ));
         return Exit::Interrupted;
     }
-    report.note(&format!("done: `{}`", folder.root.display()));
+    report.note(&format!("done: `{}`", folder.root.path().display()));
     Exit::Done
 }
 

@@ -124,6 +124,23 @@ fn new_never_writes_over_a_scene() {
     assert_eq!(std::fs::read(folder.path().join("scene.toml")).unwrap(), b"mine");
 }
 
+/// A disk that takes no byte more: files may not grow, and the signal that would tell so is ignored.
+#[cfg(unix)]
+fn on_a_full_disk(folder: &Path, arguments: &str) -> Output {
+    let command = format!("trap '' XFSZ; ulimit -f 0; exec {} {arguments}", env!("CARGO_BIN_EXE_fissure"));
+    Command::new("bash").args(["-c", &command]).current_dir(folder).output().unwrap()
+}
+
+#[cfg(unix)]
+#[test]
+fn a_new_scene_on_a_full_disk_leaves_nothing() {
+    let folder = TempDir::new().unwrap();
+    let text = expect(&on_a_full_disk(folder.path(), "new mine"), 3);
+    assert!(text.contains("mine/scene.toml") && text.contains("free some space"), "{text}");
+    assert_eq!(names(folder.path()), [""; 0]);
+    expect(&run(folder.path(), &["new", "mine"]), 0);
+}
+
 #[test]
 fn sim_then_post_gives_the_files_of_run() {
     let folder = workplace();
@@ -278,7 +295,7 @@ fn a_killed_run_resumes_to_the_same_bytes() {
     signal_when(&child, &folder.path().join("parts/plate.take/frame.0002.safetensors"), "-KILL");
     assert_eq!(child.wait().unwrap().code(), None, "the scene is too short to be killed");
     expect(&run(folder.path(), &long("parts")), 0);
-    let leftovers = |name: &String| name.ends_with(".part");
+    let leftovers = |name: &String| name.ends_with("part");
     assert!(!names(&folder.path().join("parts")).iter().any(leftovers), "{:?}", names(&folder.path().join("parts")));
     assert_same_files(&folder.path().join("whole"), &folder.path().join("parts"));
 }
@@ -312,6 +329,23 @@ fn overwrite_removes_the_meshes_of_the_run_before_and_nothing_else() {
     assert!(!left.contains(&"out/plate/plate.take/frame.0003.safetensors".to_owned()), "{left:?}");
     for precious in ["out/plate/plate.0099.glb", "out/plate/plate.take/thesis.txt"] {
         assert_eq!(std::fs::read(folder.path().join(precious)).unwrap(), b"years of work");
+    }
+}
+
+/// A list of somebody else's where the list of meshes goes: told before anything is computed, and kept.
+#[test]
+fn a_manifest_of_others_is_kept() {
+    let folder = workplace();
+    expect(&run(folder.path(), &["sim", "plate.toml", "--frames", "1-2"]), 0);
+    let theirs = folder.path().join("out/plate/manifest.json");
+    std::fs::write(&theirs, "{\"name\": \"a web page\", \"files\": [{\"file\": \"plate.toml\"}]}").unwrap();
+    let before = files(folder.path());
+    for arguments in
+        [&["run", "plate.toml"][..], &["run", "plate.toml", "--overwrite"], &["post", "out/plate/plate.take"]]
+    {
+        let text = expect(&run(folder.path(), arguments), 3);
+        assert!(text.contains("out/plate/manifest.json") && text.contains("--output"), "{text}");
+        assert!(files(folder.path()) == before, "{arguments:?}");
     }
 }
 

@@ -5,14 +5,15 @@
 mod common;
 
 use common::{Opened, frame, halves, options, scene, square};
+use fissure_files::Folder;
 use fissure_post::{Manifest, post_frame, write_frame};
 use fissure_scene::{CrackEnd, Format, Frame, Part, Point, Region, Scene, Vector};
 use std::error::Error;
 use std::path::PathBuf;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let folder = PathBuf::from(std::env::args_os().nth(1).ok_or("usage: sample_files FOLDER")?);
-    std::fs::create_dir_all(&folder)?;
+    let folder = Folder::new(PathBuf::from(std::env::args_os().nth(1).ok_or("usage: sample_files FOLDER")?));
+    folder.make()?;
     let mut manifest = Manifest::default();
     let mut provenance = None;
     for (i, (scene, mut frame)) in samples().into_iter().enumerate() {

@@ -28,6 +28,7 @@ mod glb;
 mod manifest;
 mod mesh;
 mod opening;
+mod origin;
 mod outline;
 mod packed;
 mod particles;

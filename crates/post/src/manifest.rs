@@ -1,14 +1,19 @@
 //! The list of written files.
 
+use crate::origin::{TOOL, is_ours};
 use crate::post::Provenance;
-use crate::write::{WriteError, write_atomically};
+use crate::write::{WriteError, file_name};
+use fissure_files::Folder;
 use fissure_scene::{Format, Part};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+
+/// Name of the list.
+const NAME: &str = "manifest.json";
 
 /// One written file.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FileRecord {
     /// Name of the file within its folder.
     pub file: String,
@@ -52,7 +57,53 @@ struct Document<'a> {
     files: Vec<&'a FileRecord>,
 }
 
+/// The manifest as it is read.
+#[derive(Deserialize)]
+struct OldDocument {
+    tool: String,
+    scene: String,
+    scene_hash: String,
+    files: Vec<FileRecord>,
+}
+
 impl Manifest {
+    /// The list in `folder` of meshes of this scene that are still there; an empty one when there is none or it is of
+    /// another scene.
+    ///
+    /// # Errors
+    /// When there is a `manifest.json` that Fissure has not made, or it cannot be read.
+    pub fn read(folder: &Folder, scene: &str, scene_hash: &str) -> Result<Self, WriteError> {
+        let mut manifest = Self::default();
+        let Some(old) = read(folder)?.filter(|old| old.scene == scene && old.scene_hash == scene_hash) else {
+            return Ok(manifest);
+        };
+        for mut record in old.files {
+            // A name that is no plain one is not of ours either.
+            let Ok(path) = folder.place(&record.file) else { continue };
+            if folder.length(&record.file)?.is_some() {
+                record.path = path;
+                manifest.add([record]);
+            }
+        }
+        Ok(manifest)
+    }
+
+    /// Removes the meshes of the scene `scene` that the list in `folder` holds and that say themselves that Fissure made
+    /// them, and the list. All other files stay.
+    ///
+    /// # Errors
+    /// When the list is not one of Fissure's, or a file cannot be removed.
+    pub fn remove_meshes(folder: &Folder, scene: &str) -> Result<(), WriteError> {
+        let Some(old) = read(folder)? else { return Ok(()) };
+        for record in old.files {
+            let name = file_name(scene, record.part, record.frame, record.format);
+            if name == record.file && folder.read(&name)?.is_some_and(|there| is_ours(record.format, &there)) {
+                folder.remove(&name)?;
+            }
+        }
+        Ok(folder.remove(NAME)?)
+    }
+
     /// Adds records; one of the same frame and file name replaces the earlier.
     pub fn add(&mut self, records: impl IntoIterator<Item = FileRecord>) {
         self.records.extend(records.into_iter().map(|record| ((record.frame, record.file.clone()), record)));
@@ -66,20 +117,34 @@ impl Manifest {
     /// Writes `manifest.json` into `folder`: the same bytes whatever order the records came in. One line per file.
     ///
     /// # Errors
-    /// When the file cannot be written.
-    pub fn write(&self, folder: &Path, provenance: &Provenance) -> Result<PathBuf, WriteError> {
-        let path = folder.join("manifest.json");
+    /// When there is one that Fissure has not made, or the file cannot be written.
+    pub fn write(&self, folder: &Folder, provenance: &Provenance) -> Result<PathBuf, WriteError> {
+        read(folder)?;
         let document = Document {
             tool: &provenance.tool,
             scene: &provenance.scene,
             scene_hash: &provenance.scene_hash,
             files: self.records().collect(),
         };
-        let failed = |source: serde_json::Error| WriteError { path: path.clone(), reason: source.to_string() };
-        let text = serde_json::to_string(&document).map_err(failed)?;
+        let text = serde_json::to_string(&document)?;
         // Records hold no nested objects, so each of these is the border between two of them.
         let lines = text.replace("{\"file\":", "\n{\"file\":");
-        write_atomically(&path, format!("{lines}\n").as_bytes())?;
-        Ok(path)
+        folder.write(NAME, format!("{lines}\n").as_bytes())?;
+        folder.sync()?;
+        Ok(folder.place(NAME)?)
     }
+}
+
+/// The list that is in `folder`; none when there is none, or an empty file.
+fn read(folder: &Folder) -> Result<Option<OldDocument>, WriteError> {
+    let bytes = folder.read(NAME)?.filter(|bytes| !bytes.is_empty());
+    let foreign = |path| WriteError::Foreign { path };
+    let of = |bytes: Vec<u8>| {
+        let document: Option<OldDocument> = serde_json::from_slice(&bytes).ok();
+        document
+            .filter(|document| document.tool.starts_with(TOOL))
+            .ok_or_else(|| folder.path().join(NAME))
+            .map_err(foreign)
+    };
+    bytes.map(of).transpose()
 }

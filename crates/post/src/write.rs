@@ -1,32 +1,70 @@
 //! Mesh files of a sequence.
 
-use crate::glb::to_glb;
+use crate::glb::{GlbError, to_glb};
 use crate::manifest::FileRecord;
 use crate::mesh::{Content, Mesh};
+use crate::origin::is_ours;
 use crate::ply::to_ply;
 use crate::post::FrameMeshes;
+use fissure_files::{FileError, Folder};
 use fissure_scene::{Format, Part};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-/// Why a file could not be written.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("cannot write {}: {reason}", path.display())]
-pub struct WriteError {
-    /// Which file.
-    pub path: PathBuf,
-    /// Why.
-    pub reason: String,
+/// Why a mesh or the list of meshes cannot be written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum WriteError {
+    /// The file system refused.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// There is a file in the way that Fissure has not made.
+    #[error("`{}` was not made by Fissure and stays as it is", path.display())]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The meshes do not fit into a GLB file.
+    #[error("cannot write `{file}`: {cause}")]
+    Glb {
+        /// The file.
+        file: String,
+        /// Why.
+        cause: GlbError,
+    },
+    /// The meshes cannot be written as PLY.
+    #[error("cannot write `{file}`: {cause}")]
+    Ply {
+        /// The file.
+        file: String,
+        /// Why.
+        cause: std::io::Error,
+    },
+    /// The list cannot be written as JSON.
+    #[error("cannot write the list of meshes: {0}")]
+    Json(#[from] serde_json::Error),
+}
+
+impl WriteError {
+    /// What the user can do about it.
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            Self::File(error) => error.remedy(),
+            Self::Foreign { .. } => "move it away, or choose another folder with --output",
+            Self::Glb { .. } => "write PLY, or use a larger `grid.particle_spacing`",
+            Self::Ply { .. } | Self::Json(_) => "please report it with the scene file",
+        }
+    }
 }
 
 /// Writes the meshes of one frame into `folder`, which must exist, one file per part and format:
 /// `prefix.0001.glb` for the cracked body, `prefix_particles.0001.glb` and so on for other parts, so that each part is
 /// a sequence of its own. A part with nothing in it gives a valid file with nothing in it: no sequence has gaps.
-/// Each file is written to a temporary name and renamed.
+/// Each file is there whole or not at all; one that Fissure has not made is never replaced.
 ///
 /// # Errors
 /// At the first file that cannot be written.
 pub fn write_frame(
-    folder: &Path,
+    folder: &Folder,
     prefix: &str,
     meshes: &FrameMeshes,
     formats: &[Format],
@@ -35,13 +73,17 @@ pub fn write_frame(
     for (part, objects) in &meshes.parts {
         for &format in formats {
             let file = file_name(prefix, *part, meshes.provenance.frame, format);
-            let path = folder.join(&file);
-            let failed = |reason: String| WriteError { path: path.clone(), reason };
+            let path = folder.place(&file)?;
             let bytes = match format {
-                Format::Glb => to_glb(objects, &meshes.provenance).map_err(|e| failed(e.to_string()))?,
-                Format::Ply => to_ply(objects, &meshes.provenance, meshes.up).map_err(|e| failed(e.to_string()))?,
+                Format::Glb => to_glb(objects, &meshes.provenance)
+                    .map_err(|cause| WriteError::Glb { file: file.clone(), cause })?,
+                Format::Ply => to_ply(objects, &meshes.provenance, meshes.up)
+                    .map_err(|cause| WriteError::Ply { file: file.clone(), cause })?,
             };
-            write_atomically(&path, &bytes)?;
+            if folder.read(&file)?.is_some_and(|there| !is_ours(format, &there)) {
+                return Err(WriteError::Foreign { path });
+            }
+            folder.write(&file, &bytes)?;
             records.push(record(file, path, *part, format, meshes, objects));
         }
     }
@@ -91,17 +133,4 @@ fn record(
         thickness: solids().next().map_or(0.0, |(_, thickness, _)| thickness),
         volume: solids().map(|(_, _, mesh)| mesh.volume()).sum(),
     }
-}
-
-/// Writes `bytes` beside `path` and renames, so that nobody ever sees half a file.
-pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(".part");
-    let temporary = path.with_file_name(name);
-    let failed = |source: std::io::Error| WriteError { path: path.to_owned(), reason: source.to_string() };
-    std::fs::write(&temporary, bytes).and_then(|()| std::fs::rename(&temporary, path)).map_err(|source| {
-        // What is left of the attempt is of no use; that it may not exist is no second error.
-        let _ = std::fs::remove_file(&temporary);
-        failed(source)
-    })
 }

@@ -4,7 +4,8 @@
 mod common;
 
 use common::{halves, options};
-use fissure_post::{FrameMeshes, Manifest, post_frame, write_frame};
+use fissure_files::Folder;
+use fissure_post::{FrameMeshes, Manifest, WriteError, post_frame, write_frame};
 use fissure_scene::{Format, Part, UpAxis, Vector};
 use ply_rs_bw::parser::Parser;
 use ply_rs_bw::ply::{DefaultElement, Property};
@@ -22,7 +23,7 @@ fn sample(number: i64) -> FrameMeshes {
 fn a_glb_file_holds_what_the_mesh_holds() {
     let folder = tempfile::tempdir().unwrap();
     let sample = sample(1);
-    let records = write_frame(folder.path(), "glass", &sample, &[Format::Glb]).unwrap();
+    let records = write_frame(&Folder::new(folder.path()), "glass", &sample, &[Format::Glb]).unwrap();
     let names: Vec<&str> = records.iter().map(|r| r.file.as_str()).collect();
     assert_eq!(names, ["glass.0001.glb", "glass_particles.0001.glb", "glass_collider.0001.glb"]);
 
@@ -77,7 +78,7 @@ fn a_ply_file_holds_what_the_mesh_holds() {
     let folder = tempfile::tempdir().unwrap();
     let sample = sample(1);
     assert_eq!(sample.up, UpAxis::Z);
-    let records = write_frame(folder.path(), "glass", &sample, &[Format::Ply]).unwrap();
+    let records = write_frame(&Folder::new(folder.path()), "glass", &sample, &[Format::Ply]).unwrap();
     let bytes = std::fs::read(&records[0].path).unwrap();
     let ply = Parser::<DefaultElement>::new().read_ply(&mut bytes.as_slice()).unwrap();
     let (vertices, faces) = (&ply.payload["vertex"], &ply.payload["face"]);
@@ -112,12 +113,13 @@ fn a_ply_file_holds_what_the_mesh_holds() {
 #[test]
 fn the_manifest_does_not_depend_on_the_order_of_the_frames() {
     let folder = tempfile::tempdir().unwrap();
+    let inside = Folder::new(folder.path());
     let text = |order: [i64; 3]| {
         let mut manifest = Manifest::default();
         for number in order {
-            manifest.add(write_frame(folder.path(), "glass", &sample(number), &[Format::Glb, Format::Ply]).unwrap());
+            manifest.add(write_frame(&inside, "glass", &sample(number), &[Format::Glb, Format::Ply]).unwrap());
         }
-        std::fs::read_to_string(manifest.write(folder.path(), &sample(1).provenance).unwrap()).unwrap()
+        std::fs::read_to_string(manifest.write(&inside, &sample(1).provenance).unwrap()).unwrap()
     };
     let written = text([1, 2, 10]);
     assert_eq!(written, text([10, 1, 2]));
@@ -129,15 +131,75 @@ fn the_manifest_does_not_depend_on_the_order_of_the_frames() {
     assert_eq!(files[0]["file"], "glass.0001.glb");
     assert!((files[0]["volume"].as_f64().unwrap() - files[0]["area"].as_f64().unwrap() * 0.3).abs() < 1e-4);
     // Nothing half-written stays behind.
-    let left =
-        std::fs::read_dir(folder.path()).unwrap().filter(|e| e.as_ref().unwrap().path().extension().unwrap() == "part");
-    assert_eq!(left.count(), 0);
+    assert_eq!(inside.names().unwrap().len(), files.len() + 1);
 }
 
 #[test]
 fn a_folder_that_cannot_be_written_is_named() {
     let missing = tempfile::tempdir().unwrap().path().join("missing");
-    let error = write_frame(&missing, "glass", &sample(1), &[Format::Glb]).unwrap_err();
-    assert_eq!(error.path, missing.join("glass.0001.glb"));
-    assert!(error.to_string().contains("glass.0001.glb: "), "{error}");
+    let error = write_frame(&Folder::new(&missing), "glass", &sample(1), &[Format::Glb]).unwrap_err();
+    let WriteError::File(told) = &error else { panic!("{error}") };
+    assert_eq!(told.path, missing.join("glass.0001.glb"));
+    assert!(error.to_string().contains("glass.0001.glb`: "), "{error}");
+}
+
+/// Files that somebody else made, under the names that ours would have.
+#[test]
+fn files_of_others_are_neither_replaced_nor_removed() {
+    let folder = tempfile::tempdir().unwrap();
+    let inside = Folder::new(folder.path());
+    let sample = sample(1);
+    let formats = [Format::Glb, Format::Ply];
+    let mut manifest = Manifest::default();
+    manifest.add(write_frame(&inside, "glass", &sample, &formats).unwrap());
+    manifest.write(&inside, &sample.provenance).unwrap();
+    let listed = inside.read("manifest.json").unwrap().unwrap();
+
+    // Ours are replaced, and so is one that is empty.
+    inside.write("glass.0001.ply", b"").unwrap();
+    write_frame(&inside, "glass", &sample, &formats).unwrap();
+    assert!(!inside.read("glass.0001.ply").unwrap().unwrap().is_empty());
+
+    // As another program would save them again.
+    let mut glb = inside.read("glass.0001.glb").unwrap().unwrap();
+    while let Some(at) = glb.windows(8).position(|w| w == b"fissure ") {
+        glb[at..at + 8].copy_from_slice(b"Blender ");
+    }
+    let ply = b"ply\nformat ascii 1.0\ncomment made by hand\nend_header\ncomment fissure 1\n".to_vec();
+    for (name, theirs) in
+        [("glass.0001.glb", glb), ("glass.0001.ply", ply), ("glass_particles.0001.ply", b"x".to_vec())]
+    {
+        let ours = inside.read(name).unwrap().unwrap();
+        inside.write(name, &theirs).unwrap();
+        let error = write_frame(&inside, "glass", &sample, &formats).unwrap_err();
+        assert!(matches!(&error, WriteError::Foreign { path } if path.ends_with(name)), "{error}");
+        Manifest::remove_meshes(&inside, "glass").unwrap();
+        assert_eq!(inside.read(name).unwrap().unwrap(), theirs);
+        assert_eq!(inside.names().unwrap(), [name]);
+        inside.write(name, &ours).unwrap();
+        write_frame(&inside, "glass", &sample, &formats).unwrap();
+        inside.write("manifest.json", &listed).unwrap();
+    }
+
+    // A list that was made to reach elsewhere, or to name what is not of this scene, removes nothing there.
+    let above = tempfile::tempdir().unwrap();
+    let ours = inside.read("glass.0001.glb").unwrap().unwrap();
+    std::fs::create_dir(above.path().join("meshes")).unwrap();
+    std::fs::write(above.path().join("evil.0001.glb"), &ours).unwrap();
+    let meshes = Folder::new(above.path().join("meshes"));
+    meshes.write("other.0001.glb", &ours).unwrap();
+    for name in ["../evil.0001.glb", "other.0001.glb"] {
+        let steered = String::from_utf8(listed.clone()).unwrap().replace("glass.0001.glb", name);
+        meshes.write("manifest.json", steered.as_bytes()).unwrap();
+        Manifest::remove_meshes(&meshes, "glass").unwrap();
+        assert!(above.path().join("evil.0001.glb").exists() && meshes.names().unwrap() == ["other.0001.glb"]);
+    }
+
+    // A list that is not ours.
+    for theirs in ["{\"name\": \"a web page\"}", "{\"tool\": \"webpack\", \"files\": []}", "[]", "\0"] {
+        meshes.write("manifest.json", theirs.as_bytes()).unwrap();
+        assert!(Manifest::remove_meshes(&meshes, "glass").is_err() && Manifest::read(&meshes, "glass", "").is_err());
+        assert!(manifest.write(&meshes, &sample.provenance).is_err(), "{theirs}");
+        assert_eq!(meshes.read("manifest.json").unwrap().unwrap(), theirs.as_bytes());
+    }
 }
