@@ -4,6 +4,8 @@
 //! learns how many calls it takes, and can then let each of them fail in turn.
 
 use crate::{Disk, Draft};
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsString;
 use std::io;
@@ -70,14 +72,8 @@ impl SimulatedDisk {
     /// The power goes: of what was not synced each name and each content is kept, lost or kept in part, as `seed` has it.
     pub fn cut_power(&self, seed: u64) {
         let mut content = self.lock();
-        let mut random = seed;
-        let mut draw = |below: u64| {
-            // Steele & Vigna's SplitMix64.
-            random = random.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            let z = (random ^ (random >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            (z ^ (z >> 31)) % below
-        };
+        let mut random = Pcg64::seed_from_u64(seed);
+        let mut draw = |below: u64| random.next_u64() % below;
         let Content { names, synced_names, files, .. } = &mut *content;
         let paths: BTreeSet<PathBuf> = names.keys().chain(synced_names.keys()).cloned().collect();
         let kept = paths.into_iter().filter_map(|path| {

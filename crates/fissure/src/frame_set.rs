@@ -1,5 +1,7 @@
 //! Sets of frame numbers as typed: `1-45x2`, `1,10,20-30`, `-5--1`.
 
+use crate::exit::Exit;
+use crate::failure::Failure;
 use std::fmt;
 use std::str::FromStr;
 
@@ -19,6 +21,13 @@ struct Range {
     stride: i64,
 }
 
+impl Range {
+    /// The highest frame.
+    fn end(&self) -> i64 {
+        self.last - (self.last - self.first) % self.stride
+    }
+}
+
 /// Why a set of frames cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is no range of frames; write for example 7, 1-45, 1-45x2 or 1,10,20-30")]
@@ -30,9 +39,24 @@ impl FrameSet {
         self.ranges.iter().any(|r| (r.first..=r.last).contains(&frame) && (frame - r.first) % r.stride == 0)
     }
 
+    /// That every frame of the set is one of `first` to `last`, which `whose` has.
+    ///
+    /// # Errors
+    /// Names the frames that are not.
+    pub(crate) fn must_be_in(&self, first: i64, last: i64, whose: &str) -> Result<(), Failure> {
+        let outside = |r: &&Range| r.first < first || r.end() > last;
+        let Some(range) = self.ranges.iter().find(outside) else { return Ok(()) };
+        let number = if range.first < first || range.first > last { range.first } else { range.end() };
+        Err(Failure::new(
+            Exit::Usage,
+            format!("`--frames {self}` asks for frame {number}, which {whose} does not have"),
+            format!("{whose} has the frames {first}-{last}"),
+        ))
+    }
+
     /// The highest frame of the set.
     pub(crate) fn last(&self) -> i64 {
-        self.ranges.iter().map(|r| r.last - (r.last - r.first) % r.stride).max().unwrap_or(i64::MIN)
+        self.ranges.iter().map(Range::end).max().unwrap_or(i64::MIN)
     }
 }
 
@@ -93,6 +117,24 @@ mod tests {
     #[test]
     fn the_last_frame_is_one_that_is_in_the_set() {
         assert_eq!("1-10x4,2".parse::<FrameSet>().unwrap().last(), 9);
+    }
+
+    #[test]
+    fn frames_that_are_not_there_are_named() {
+        let told = |text: &str| {
+            let set: FrameSet = text.parse().unwrap();
+            set.must_be_in(1, 48, "the scene").map_err(|failure| format!("{failure} {:?}", failure.remedy))
+        };
+        for fine in ["1-48", "48", "1-50x5", "5,7-9"] {
+            assert_eq!(told(fine), Ok(()), "{fine}");
+        }
+        for (bad, number) in [("40-60", 60), ("0-4", 0), ("5,100-200", 100), ("1-50x7", 50), ("-3", -3)] {
+            let told = told(bad).unwrap_err();
+            assert!(
+                told.contains(&format!("frame {number},")) && told.contains("1-48") && told.contains(bad),
+                "{told}"
+            );
+        }
     }
 
     #[test]

@@ -8,6 +8,7 @@ mod failure;
 mod folder;
 mod frame_set;
 mod interrupt;
+mod invocation;
 mod meshes;
 mod new;
 mod post;
@@ -26,6 +27,7 @@ use args::{Arguments, Command};
 use clap::Parser;
 use exit::Exit;
 use failure::Failure;
+use interrupt::Interrupt;
 use report::Report;
 use std::process::ExitCode;
 
@@ -38,8 +40,9 @@ fn main() -> ExitCode {
             return if error.use_stderr() { Exit::Usage } else { Exit::Done }.into();
         }
     };
+    let interrupt = Interrupt::listen(arguments.talk);
     let report = Report::new(arguments.talk);
-    match execute(&arguments.command, &report) {
+    match execute(&arguments.command, &interrupt, &report) {
         Ok(exit) => exit.into(),
         Err(failure) => {
             report.error(&failure);
@@ -48,13 +51,13 @@ fn main() -> ExitCode {
     }
 }
 
-fn execute(command: &Command, report: &Report) -> Result<Exit, Failure> {
+fn execute(command: &Command, interrupt: &Interrupt, report: &Report) -> Result<Exit, Failure> {
     match command {
         Command::New(arguments) => new::new(arguments, report),
         Command::Check(arguments) => check::check(arguments, report),
-        Command::Run(arguments) => run::run(arguments, report),
-        Command::Sim(arguments) => sim::sim(arguments, report),
-        Command::Post(arguments) => post::post(arguments, report),
+        Command::Run(arguments) => run::run(arguments, interrupt, report),
+        Command::Sim(arguments) => sim::sim(arguments, interrupt, report),
+        Command::Post(arguments) => post::post(arguments, interrupt, report),
         Command::Verify(arguments) => verify::verify(arguments, report),
         Command::Schema => schema::schema(),
     }

@@ -4,29 +4,35 @@ use crate::args::PostArguments;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
+use crate::invocation;
 use crate::meshes::Mesher;
 use crate::progress::MeshProgress;
 use crate::report::Report;
 use crate::threads;
 use crate::workers::{Work, stream};
-use fissure_files::Folder;
+use fissure_files::{Folder, Lock};
 use fissure_scene::Take;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 /// Writes the meshes of a take.
-pub(crate) fn post(arguments: &PostArguments, report: &Report) -> Result<Exit, Failure> {
+pub(crate) fn post(arguments: &PostArguments, interrupt: &Interrupt, report: &Report) -> Result<Exit, Failure> {
     let threads = threads::set(arguments.threads)?;
     let take = Take::open(&arguments.take)?;
-    let wanted = |number: &i64| arguments.frames.as_ref().is_none_or(|frames| frames.contains(*number));
-    let numbers: Vec<i64> = take.frame_numbers().into_iter().filter(wanted).collect();
-    if let (true, Some(frames)) = (numbers.is_empty(), &arguments.frames) {
+    let held = take.frame_numbers();
+    let (Some(&first), Some(&last)) = (held.first(), held.last()) else {
         return Err(Failure::new(
-            Exit::Usage,
-            format!("the take has none of the frames {frames}"),
-            format!("it has the frames {}", extent(&take.frame_numbers())),
+            Exit::File,
+            format!("`{}` holds no frames yet", arguments.take.display()),
+            "wait for the first one, or `fissure run` its scene again",
         ));
+    };
+    if let Some(frames) = &arguments.frames {
+        frames.must_be_in(first, last, "the take")?;
     }
+    let wanted = |number: &i64| arguments.frames.as_ref().is_none_or(|frames| frames.contains(*number));
+    let numbers: Vec<i64> = held.into_iter().filter(wanted).collect();
+    take.remarks()?.iter().for_each(|remark| report.warn(&remark.to_string()));
     let folder = match &arguments.output {
         Some(folder) => folder.clone(),
         None => {
@@ -35,7 +41,8 @@ pub(crate) fn post(arguments: &PostArguments, report: &Report) -> Result<Exit, F
     };
     let folder = Folder::new(folder);
     folder.make()?;
-    let interrupt = Interrupt::listen();
+    let _lock = Lock::take(folder.path(), &invocation::typed())?;
+    folder.remove_drafts()?;
     let mesher = Mesher::new(take.scene(), &folder, &arguments.mesh, report)?;
     let progress = Mutex::new(MeshProgress::new(report, numbers.len()));
     let work = |work: Work| {
@@ -46,7 +53,8 @@ pub(crate) fn post(arguments: &PostArguments, report: &Report) -> Result<Exit, F
             progress.lock().unwrap_or_else(PoisonError::into_inner).frame(number);
         }
     };
-    stream(threads, numbers.iter().copied(), &work, |_| ());
+    interrupt.finish_cleanly();
+    stream(threads, numbers.iter().copied(), &work, |_| ())?;
     drop(progress);
     mesher.finish()?;
     if interrupt.is_set() {
@@ -55,13 +63,4 @@ pub(crate) fn post(arguments: &PostArguments, report: &Report) -> Result<Exit, F
     }
     report.note(&format!("wrote the meshes of {} frames into `{}`", numbers.len(), folder.path().display()));
     Ok(Exit::Done)
-}
-
-/// First and last of a list.
-fn extent(frames: &[i64]) -> String {
-    match frames {
-        [] => "none".to_owned(),
-        [only] => only.to_string(),
-        [first, .., last] => format!("{first}-{last}"),
-    }
 }

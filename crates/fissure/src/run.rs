@@ -10,37 +10,42 @@ use crate::report::Report;
 use crate::solve::{self, Outcome};
 use crate::workers::{Work, stream};
 use crate::{scene_file, threads};
+use fissure_post::Manifest;
 use fissure_scene::Take;
 
 /// Simulates a scene and writes its meshes while the solver goes on.
-pub(crate) fn run(arguments: &RunArguments, report: &Report) -> Result<Exit, Failure> {
+pub(crate) fn run(arguments: &RunArguments, interrupt: &Interrupt, report: &Report) -> Result<Exit, Failure> {
     let threads = threads::set(arguments.take.threads)?;
     let scene = scene_file::read(&arguments.scene, report)?;
     let folder = OutputFolder::of(&scene, &arguments.take);
-    let interrupt = Interrupt::listen();
+    // Told before anything is computed.
+    Manifest::read(&folder.root, &scene.name, &scene.hash)?;
     let wanted = |number: i64| arguments.frames.as_ref().is_none_or(|frames| frames.contains(number));
     let solve = solve::open(&scene, &folder, &arguments.take, arguments.frames.as_ref(), report)?;
+    let _lock = folder.lock_meshes()?;
+    folder.root.remove_drafts()?;
     let mesher = Mesher::new(&scene, &folder.root, &arguments.mesh, report)?;
     // Frames of an earlier run: their meshes may be missing or be of other options.
-    let take = Take::open(folder.take.path())?;
-    let earlier = solve.as_ref().map_or(i64::MAX, |solve| solve.first_new_frame());
+    let take = Take::read(&folder.take)?;
+    let earlier = solve.as_ref().map_or(i64::MAX, |solve| solve.first_new_frame()).min(scene.frames.last + 1);
     let backlog = take.frame_numbers().into_iter().filter(|&number| number < earlier && wanted(number));
     let work = |work: Work| match work {
         Work::New(frame) => mesher.make(frame.number, || Ok(*frame)),
         Work::InTake(_) if interrupt.is_set() => {}
         Work::InTake(number) => mesher.make(number, || Ok(take.frame(number)?)),
     };
+    interrupt.finish_cleanly();
     let outcome = stream(threads::mesh_workers(threads), backlog, &work, |send| match solve {
-        Some(solve) => solve.run(&interrupt, report, &mut |frame| {
+        Some(solve) => solve.run(interrupt, report, &mut |frame| {
             if wanted(frame.number) {
                 send(frame);
             }
         }),
         None => Ok(Outcome::Complete),
-    });
+    })?;
     // The solver's failure says more than those of the meshes, which have been reported one by one.
     let meshes = mesher.finish();
     let outcome = outcome?;
     meshes?;
-    Ok(solve::close(outcome, &folder, &interrupt, report))
+    Ok(solve::close(outcome, &folder, interrupt, report))
 }

@@ -10,14 +10,13 @@ use crate::solve;
 use crate::{scene_file, threads};
 
 /// Simulates a scene into a take.
-pub(crate) fn sim(arguments: &SimArguments, report: &Report) -> Result<Exit, Failure> {
+pub(crate) fn sim(arguments: &SimArguments, interrupt: &Interrupt, report: &Report) -> Result<Exit, Failure> {
     threads::set(arguments.take.threads)?;
     let scene = scene_file::read(&arguments.scene, report)?;
     let folder = OutputFolder::of(&scene, &arguments.take);
-    let interrupt = Interrupt::listen();
     let Some(solve) = solve::open(&scene, &folder, &arguments.take, arguments.frames.as_ref(), report)? else {
         return Ok(Exit::Done);
     };
-    let outcome = solve.run(&interrupt, report, &mut |_| ())?;
-    Ok(solve::close(outcome, &folder, &interrupt, report))
+    let outcome = solve.run(interrupt, report, &mut |_| ())?;
+    Ok(solve::close(outcome, &folder, interrupt, report))
 }

@@ -6,10 +6,13 @@ use crate::failure::Failure;
 use crate::folder::OutputFolder;
 use crate::frame_set::FrameSet;
 use crate::interrupt::Interrupt;
+use crate::invocation;
 use crate::progress::SimulationProgress;
 use crate::report::Report;
-use fissure_scene::{Frame, Provenance, Scene, Take, TakeError, TakeWriter};
-use fissure_sim::Simulation;
+use fissure_files::{Lock, LockError};
+use fissure_post::Manifest;
+use fissure_scene::{Frame, Opened, Provenance, Scene, Start, TakeError, TakeWriter};
+use fissure_sim::{Simulation, SimulationError};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
@@ -31,18 +34,20 @@ pub(crate) enum Outcome {
 pub(crate) struct Solve {
     simulation: Simulation,
     writer: TakeWriter,
-    /// The newest frame that is in the take.
+    /// The newest frame that has been computed.
     newest: i64,
     /// The frame at which to stop.
     last: i64,
-    /// Whether the newest frame is the state at rest, which nobody has seen yet.
+    /// Whether that frame is not in the take yet: nobody has seen it.
     fresh: bool,
+    /// No other process writes to the take as long as this lives.
+    _lock: Lock,
 }
 
 /// Opens the take of `scene`: goes on with one that is there, or begins one. None: all frames asked for are there.
 ///
 /// # Errors
-/// When there is a take of another scene, or a file cannot be used.
+/// When there is a take that cannot go on, another process writes to it, or a file cannot be used.
 pub(crate) fn open(
     scene: &Scene,
     folder: &OutputFolder,
@@ -51,43 +56,55 @@ pub(crate) fn open(
     report: &Report,
 ) -> Result<Option<Solve>, Failure> {
     let last = last_frame(scene, frames)?;
-    let path = folder.take.path();
-    if !path.exists() {
-        return begin(scene, folder, last).map(Some);
-    }
-    if arguments.overwrite {
-        fissure_post::Manifest::remove_meshes(&folder.root, &scene.name)?;
-        return begin(scene, folder, last).map(Some);
-    }
-    let take = Take::open(path)?;
-    if take.scene().hash != scene.hash {
-        return Err(Failure::new(
-            Exit::Usage,
-            format!("`{}` is a take of another scene, or of this one with other settings", path.display()),
-            "start afresh with --overwrite, or keep it and write elsewhere with --output",
-        ));
-    }
-    if take.frame_numbers().last().is_some_and(|&newest| newest >= last) {
-        report.note(&format!("`{}` holds all frames up to {last} already", path.display()));
-        return Ok(None);
-    }
-    let (writer, saved) = TakeWriter::resume(path, scene, provenance())?;
-    let Some(saved) = saved else {
-        // The run before ended before its first state was saved, or was one of another version.
-        return begin(scene, folder, last).map(Some);
+    // A scene that cannot be simulated leaves nothing behind.
+    let begins = arguments.overwrite || !folder.take.path().exists();
+    let begun = if begins { Some(Simulation::new(scene)?) } else { None };
+    folder.take.make()?;
+    let lock = folder.lock_take()?;
+    let (writer, start) = if arguments.overwrite {
+        let _meshes = folder.lock_meshes()?;
+        Manifest::remove_meshes(&folder.root, &scene.name)?;
+        (TakeWriter::replace(&folder.take, scene, provenance())?, Start::First)
+    } else {
+        let Opened { writer, start, remarks } = TakeWriter::open(&folder.take, scene, provenance(), last)?;
+        remarks.iter().for_each(|remark| report.warn(&remark.to_string()));
+        (writer, start)
     };
-    let simulation = Simulation::restore(scene, &saved.bytes)?;
-    report.note(&format!("resuming `{}` after frame {}", path.display(), saved.frame));
-    Ok(Some(Solve { simulation, writer, newest: saved.frame, last, fresh: false }))
+    let take = folder.take.path().display();
+    let solve = |simulation: Simulation, writer, fresh| {
+        let newest = simulation.frame_number();
+        Ok(Some(Solve { simulation, writer, newest, last, fresh, _lock: lock }))
+    };
+    match start {
+        Start::Complete => {
+            report.note(&format!("`{take}` holds all frames up to {last} already"));
+            Ok(None)
+        }
+        Start::First => {
+            if let Some(newest) = writer.newest() {
+                report.note(&format!(
+                    "`{take}` holds the frames up to {newest} but no state to go on from: they are computed again and compared"
+                ));
+            }
+            solve(begun.map_or_else(|| Simulation::new(scene), Ok)?, writer, true)
+        }
+        Start::At(saved) => {
+            report.note(&format!("resuming `{take}` after frame {}", saved.frame));
+            let simulation = Simulation::restore(scene, &saved.bytes).map_err(|error| useless_state(error, folder))?;
+            let is_listed = writer.newest().is_some_and(|newest| newest >= saved.frame);
+            solve(simulation, writer, !is_listed)
+        }
+    }
 }
 
-fn begin(scene: &Scene, folder: &OutputFolder, last: i64) -> Result<Solve, Failure> {
-    let simulation = Simulation::new(scene)?;
-    folder.root.make()?;
-    let mut writer = TakeWriter::create(folder.take.path(), scene, provenance())?;
-    let frame = simulation.frame();
-    writer.write_frame(&frame)?;
-    Ok(Solve { simulation, writer, newest: frame.number, last, fresh: true })
+/// A state that is whole but none of this scene and program.
+fn useless_state(error: SimulationError, folder: &OutputFolder) -> Failure {
+    match error {
+        SimulationError::BadState(cause) => {
+            TakeError::DamagedState { path: folder.take.path().join("state.bin"), cause }.into()
+        }
+        other => other.into(),
+    }
 }
 
 /// Who writes the take. Nothing is random yet.
@@ -96,17 +113,14 @@ fn provenance() -> Provenance {
 }
 
 /// The frame at which to stop.
+///
+/// # Errors
+/// When frames are asked for that the scene does not have.
 fn last_frame(scene: &Scene, frames: Option<&FrameSet>) -> Result<i64, Failure> {
     let (first, last) = (scene.frames.first, scene.frames.last);
     let Some(frames) = frames else { return Ok(last) };
-    if !(first..=last).any(|number| frames.contains(number)) {
-        return Err(Failure::new(
-            Exit::Usage,
-            format!("the scene has none of the frames {frames}"),
-            format!("it has the frames {first}-{last}"),
-        ));
-    }
-    Ok(frames.last().min(last))
+    frames.must_be_in(first, last, "the scene")?;
+    Ok(frames.last())
 }
 
 impl Solve {
@@ -125,14 +139,17 @@ impl Solve {
         report: &Report,
         hand_on: &mut dyn FnMut(Frame),
     ) -> Result<Outcome, Failure> {
+        interrupt.finish_cleanly();
         let mut progress = SimulationProgress::new(report, self.newest, self.last);
         let frame = self.simulation.frame();
+        // The state at the newest frame: what goes on after an interrupt in the middle of the next.
+        let mut state = self.simulation.save();
+        // A frame that is there already is held against what was restored.
+        self.writer.write_frame(&frame, (self.newest == self.last).then_some(state.as_slice()))?;
         progress.frame(frame.number, &frame.tips);
         if self.fresh {
             hand_on(frame);
         }
-        // The state at the newest frame: what goes on after an interrupt in the middle of the next.
-        let mut state = self.simulation.save();
         let mut state_written = Instant::now();
         let mut formulation = self.simulation.formulation();
         while self.newest < self.last {
@@ -154,20 +171,16 @@ impl Solve {
                     frame.number
                 ));
             }
-            self.writer.write_frame(&frame)?;
+            state = self.simulation.save();
+            // At the end too: the take is then the same whether and when states were written on the way.
+            let due = frame.number == self.last || state_written.elapsed() >= STATE_INTERVAL;
+            self.writer.write_frame(&frame, due.then_some(state.as_slice()))?;
+            if due {
+                state_written = Instant::now();
+            }
             self.newest = frame.number;
             progress.frame(frame.number, &frame.tips);
             hand_on(frame);
-            state = self.simulation.save();
-            if state_written.elapsed() >= STATE_INTERVAL {
-                self.writer.write_state(&state, self.newest)?;
-                state_written = Instant::now();
-            }
-        }
-        // At the end too: the take is then the same whether and when states were written on the way.
-        self.writer.write_state(&state, self.newest)?;
-        if self.simulation.is_finished() {
-            self.writer.finish()?;
         }
         Ok(Outcome::Complete)
     }
@@ -179,25 +192,12 @@ pub(crate) fn close(outcome: Outcome, folder: &OutputFolder, interrupt: &Interru
         report.warn(&format!(
             "interrupted; `{}` is readable. To go on: {}",
             folder.take.path().display(),
-            same_command()
+            invocation::to_go_on()
         ));
         return Exit::Interrupted;
     }
     report.note(&format!("done: `{}`", folder.root.path().display()));
     Exit::Done
-}
-
-/// The command line as it was typed, quoted for a shell.
-fn same_command() -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+@%".contains(c);
-    let quote = |word: String| {
-        let bare = !word.is_empty() && word.chars().all(plain);
-        if bare { word } else { format!("'{}'", word.replace('\'', r"'\''")) }
-    };
-    let words = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
-    // Starting afresh again is not going on.
-    let typed = words.filter(|word| word != "--overwrite").map(quote);
-    std::iter::once("fissure".to_owned()).chain(typed).collect::<Vec<_>>().join(" ")
 }
 
 impl From<TakeError> for Failure {
@@ -206,7 +206,19 @@ impl From<TakeError> for Failure {
             TakeError::OtherScene { .. } | TakeError::NoFrame { .. } => Exit::Usage,
             _ => Exit::File,
         };
-        // These messages name the file and the remedy.
-        Self { exit, message: error.to_string(), remedy: None, snippet: None }
+        Self::new(exit, error.to_string(), error.remedy())
+    }
+}
+
+impl From<LockError> for Failure {
+    fn from(error: LockError) -> Self {
+        match error {
+            LockError::File(error) => error.into(),
+            held => Self::new(
+                Exit::File,
+                held.to_string(),
+                "wait until it has finished, stop it, or write elsewhere with --output",
+            ),
+        }
     }
 }

@@ -2,15 +2,26 @@
 
 use crate::exit::Exit;
 use crate::failure::Failure;
+use std::fmt::Display;
 use std::num::NonZero;
 
 /// Sets the number of threads for the whole program, and returns it; without a wish: one per core.
 pub(crate) fn set(wish: Option<u16>) -> Result<usize, Failure> {
     let threads = wish.map_or_else(|| std::thread::available_parallelism().map_or(1, NonZero::get), usize::from);
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().map_err(|error| {
-        Failure::new(Exit::Usage, format!("cannot start {threads} threads: {error}"), "ask for fewer with --threads")
-    })?;
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build_global()
+        .map_err(|error| cannot_start(threads, &error))?;
     Ok(threads)
+}
+
+/// Threads that the system has no room for.
+pub(crate) fn cannot_start(threads: usize, error: &dyn Display) -> Failure {
+    Failure::new(
+        Exit::Usage,
+        format!("cannot start {threads} threads: {error}"),
+        "ask for fewer with --threads, or allow the program more memory (`ulimit -v`) or threads (`ulimit -u`)",
+    )
 }
 
 /// Workers that make meshes beside a solver that has `threads`: a few, because each holds a frame.

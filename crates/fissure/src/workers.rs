@@ -5,6 +5,7 @@
 
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::threads;
 use fissure_scene::Frame;
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -47,27 +48,37 @@ impl Queue {
 /// Runs `produce` on this thread; each frame it sends and each frame of `backlog` goes to `work` on one of `workers`
 /// threads. Waits for all of them.
 ///
-/// `work` reports its own outcome; frames may finish in any order. Sending waits while the workers are behind.
+/// `work` reports its own outcome; frames may finish in any order. Sending waits while the workers are behind. Where the
+/// system has no room for so many threads, fewer do the work.
+///
+/// # Errors
+/// When not one thread can be started; `produce` has not begun then.
 pub(crate) fn stream<R>(
     workers: usize,
     backlog: impl IntoIterator<Item = i64>,
     work: &(dyn Fn(Work) + Sync),
     produce: impl FnOnce(&dyn Fn(Frame)) -> R,
-) -> R {
+) -> Result<R, Failure> {
     let workers = workers.max(1);
     let (sender, receiver) = sync_channel::<Frame>(workers);
     let queue = Queue { receiver: Mutex::new(receiver), backlog: Mutex::new(backlog.into_iter().collect()) };
     std::thread::scope(|scope| {
-        for _ in 0..workers {
-            scope.spawn(|| {
-                while let Some(item) = queue.next() {
-                    work(item);
-                }
-            });
+        let worker = || {
+            while let Some(item) = queue.next() {
+                work(item);
+            }
+        };
+        let start = |name: usize| std::thread::Builder::new().name(format!("mesh {name}")).spawn_scoped(scope, worker);
+        for name in 0..workers {
+            match start(name) {
+                Ok(_) => {}
+                Err(error) if name == 0 => return Err(threads::cannot_start(1, &error)),
+                Err(_) => break,
+            }
         }
         // The receiver outlives the sender, so sending cannot fail. The sender goes at the end: the workers then stop.
         let send = move |frame| drop(sender.send(frame));
-        produce(&send)
+        Ok(produce(&send))
     })
 }
 
@@ -85,6 +96,7 @@ pub(crate) fn contain<T>(work: impl FnOnce() -> Result<T, Failure>) -> Result<T,
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
     use std::sync::atomic::{AtomicI64, AtomicUsize, Ordering};
 
@@ -108,7 +120,8 @@ mod tests {
                 most.fetch_max(alive.fetch_add(1, Ordering::SeqCst) + 1, Ordering::SeqCst);
                 send(Frame { number, ..Frame::default() });
             }
-        });
+        })
+        .unwrap();
         assert_eq!(sum.into_inner(), 5050 + 10_055);
         // Two at work, two in the channel, one at the door.
         assert!(most.into_inner() <= 5);

@@ -332,6 +332,169 @@ fn overwrite_removes_the_meshes_of_the_run_before_and_nothing_else() {
     }
 }
 
+/// A flipped bit in the state. Truth: the files as they were, until `--overwrite` asks for others.
+#[test]
+fn a_damaged_state_stops_and_loses_nothing() {
+    let folder = workplace();
+    expect(&run(folder.path(), &["sim", "plate.toml", "--frames", "1-4"]), 0);
+    let state = folder.path().join("out/plate/plate.take/state.bin");
+    let mut bytes = std::fs::read(&state).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 16;
+    std::fs::write(&state, bytes).unwrap();
+    let before = files(folder.path());
+    let text = expect(&run(folder.path(), &["run", "plate.toml"]), 3);
+    assert!(["state.bin", "damaged", "remove the state", "--overwrite"].iter().all(|w| text.contains(w)), "{text}");
+    assert!(files(folder.path()) == before);
+    // As the message says: the same frames come out, and the take goes on.
+    std::fs::remove_file(&state).unwrap();
+    let text = expect(&run(folder.path(), &["sim", "plate.toml"]), 0);
+    assert!(text.contains("computed again"), "{text}");
+    expect(&run(folder.path(), &["sim", "plate.toml", "--output", "whole"]), 0);
+    assert_same_files(&folder.path().join("out/plate"), &folder.path().join("whole"));
+}
+
+/// A flipped bit in a frame. Truth: it is named, and comes back as it was.
+#[test]
+fn a_damaged_frame_is_named_and_comes_back() {
+    let folder = workplace();
+    expect(&run(folder.path(), &["run", "plate.toml", "--frames", "1-4", "--formats", "ply"]), 0);
+    let whole = files(folder.path());
+    let frame = folder.path().join("out/plate/plate.take/frame.0003.safetensors");
+    let mut bytes = std::fs::read(&frame).unwrap();
+    let last = bytes.len() - 1;
+    bytes[last] ^= 1;
+    std::fs::write(&frame, bytes).unwrap();
+    let text = expect(&run(folder.path(), &["post", "out/plate/plate.take", "--formats", "ply"]), 3);
+    assert!(text.contains("frame.0003.safetensors") && text.contains("damaged") && text.contains("remove"), "{text}");
+    std::fs::remove_file(&frame).unwrap();
+    expect(&run(folder.path(), &["run", "plate.toml", "--frames", "1-4", "--formats", "ply"]), 0);
+    assert!(files(folder.path()) == whole);
+}
+
+/// What the frames do not depend on may change: the meshes follow, the frames stay as they are.
+#[test]
+fn an_edited_output_makes_meshes_anew_and_simulates_nothing() {
+    let folder = workplace();
+    expect(&run(folder.path(), &["run", "plate.toml", "--formats", "ply"]), 0);
+    let take = folder.path().join("out/plate/plate.take");
+    let written = |name: &str| std::fs::metadata(take.join(name)).unwrap().modified().unwrap();
+    let before = written("frame.0012.safetensors");
+    let edited = PLATE
+        .replace("thickness = 2.0", "thickness = 3.5\nformats = [\"ply\"]")
+        .replace("[output]", "# thicker\n[output]");
+    std::fs::write(folder.path().join("plate.toml"), edited).unwrap();
+    let text = expect(&run(folder.path(), &["run", "plate.toml"]), 0);
+    assert!(text.contains("holds all frames"), "{text}");
+    let listed = |manifest: &str| {
+        let text = std::fs::read_to_string(folder.path().join(manifest)).unwrap();
+        let list: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let files = list["files"].as_array().unwrap().clone();
+        assert!(files.iter().all(|file| file["thickness"] == 3.5), "{text}");
+        files.len()
+    };
+    assert_eq!(listed("out/plate/manifest.json"), 12);
+    assert_eq!(written("frame.0012.safetensors"), before);
+    // The take knows, too.
+    expect(&run(folder.path(), &["post", "out/plate/plate.take", "--output", "again"]), 0);
+    assert_eq!(listed("again/manifest.json"), 12);
+    // A longer range goes on where the take stops, a shorter one is there already.
+    for (range, told) in [("1-14", "after frame 12"), ("1-5", "holds all frames up to 5")] {
+        let text = expect(&run(folder.path(), &["run", "plate.toml", "--set", &format!("frames.range={range}")]), 0);
+        assert!(text.contains(told), "{text}");
+    }
+    expect(&run(folder.path(), &["sim", "plate.toml", "--set", "frames.range=1-14", "--output", "whole"]), 0);
+    let name = "plate.take/frame.0014.safetensors";
+    let frame = |root: &str| std::fs::read(folder.path().join(root).join(name)).unwrap();
+    assert!(frame("out/plate") == frame("whole"));
+}
+
+/// Two processes in one folder. Truth: the files of a run that was alone.
+#[cfg(unix)]
+#[test]
+fn a_second_process_is_kept_out_and_readers_are_not() {
+    let folder = workplace();
+    expect(&run(folder.path(), &long("whole")), 0);
+    let mut child = fissure(folder.path(), &long("parts")).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let sign = folder.path().join("parts/plate.take/frame.0002.safetensors");
+    // Stopped, it keeps what it has for as long as this takes.
+    signal_when(&child, &sign, "-STOP");
+    let process = format!("process {} (`fissure run", child.id());
+    for arguments in [&long("parts")[..], &["post", "parts/plate.take"]] {
+        let text = expect(&run(folder.path(), arguments), 3);
+        assert!(text.contains(&process) && text.contains("--output"), "{text}");
+    }
+    expect(&run(folder.path(), &["post", "parts/plate.take", "--output", "read"]), 0);
+    assert!(folder.path().join("read/plate.0001.glb").exists());
+    assert!(Command::new("kill").args(["-CONT", &child.id().to_string()]).status().unwrap().success());
+    assert!(child.wait().unwrap().success());
+    assert_same_files(&folder.path().join("whole"), &folder.path().join("parts"));
+
+    // A lock ends with its owner.
+    let mut child = fissure(folder.path(), &long("dead")).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    signal_when(&child, &folder.path().join("dead/plate.take/.fissure.lock"), "-KILL");
+    child.wait().unwrap();
+    expect(&run(folder.path(), &long("dead")), 0);
+    assert_same_files(&folder.path().join("whole"), &folder.path().join("dead"));
+}
+
+/// A request to stop as soon as the program can hear it, long before the first frame.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_early_interrupt_is_told_as_one() {
+    let folder = workplace();
+    for _ in 0..10 {
+        let child = fissure(folder.path(), &long("out")).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let status = format!("/proc/{}/status", child.id());
+        let catches_interrupts = || {
+            let status = std::fs::read_to_string(&status).unwrap_or_default();
+            let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap_or_default();
+            u64::from_str_radix(caught.trim(), 16).is_ok_and(|signals| signals & 2 != 0)
+        };
+        while !catches_interrupts() {
+            std::thread::yield_now();
+        }
+        assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+        let text = expect(&child.wait_with_output().unwrap(), 75);
+        assert!(text.contains("interrupted"), "{text}");
+    }
+    expect(&run(folder.path(), &long("out")), 0);
+}
+
+/// A folder in which a death came before the first file.
+#[test]
+fn an_empty_take_begins() {
+    let folder = workplace();
+    std::fs::create_dir_all(folder.path().join("out/plate/plate.take")).unwrap();
+    expect(&run(folder.path(), &["sim", "plate.toml", "--frames", "1-2"]), 0);
+    let text = expect(&run(folder.path(), &["post", "out/plate/plate.take", "--frames", "1-3"]), 2);
+    assert!(text.contains("frame 3") && text.contains("1-2"), "{text}");
+}
+
+/// A disk that is full from the start, and then is not. Truth: the files of a run on a disk with space.
+#[cfg(unix)]
+#[test]
+fn a_run_on_a_full_disk_goes_on_when_there_is_space() {
+    let folder = workplace();
+    let text = expect(&on_a_full_disk(folder.path(), "run plate.toml"), 3);
+    assert!(text.contains("plate.take") && text.contains("free some space"), "{text}");
+    expect(&run(folder.path(), &["run", "plate.toml"]), 0);
+    expect(&run(folder.path(), &["run", "plate.toml", "--output", "whole"]), 0);
+    assert_same_files(&folder.path().join("out/plate"), &folder.path().join("whole"));
+}
+
+/// More threads than the system has room for.
+#[cfg(unix)]
+#[test]
+fn threads_without_room_are_told() {
+    let folder = workplace();
+    let command = format!("ulimit -v 1000000; exec {} run plate.toml --threads 1000", env!("CARGO_BIN_EXE_fissure"));
+    let output = Command::new("bash").args(["-c", &command]).current_dir(folder.path()).output().unwrap();
+    let text = expect(&output, 2);
+    assert!(text.contains("1000 threads") && text.contains("--threads"), "{text}");
+    assert_eq!(names(folder.path()), ["plate.toml"]);
+}
+
 /// A list of somebody else's where the list of meshes goes: told before anything is computed, and kept.
 #[test]
 fn a_manifest_of_others_is_kept() {
@@ -490,6 +653,24 @@ const TABLE: &[Bad] = &[
         what: "frames outside the scene",
         arguments: &["run", "plate.toml", "--frames", "100-200"],
         says: &["100-200", "1-12"],
+        ..FINE
+    },
+    Bad {
+        what: "frames beyond the end",
+        arguments: &["run", "plate.toml", "--frames", "10-20"],
+        says: &["10-20", "frame 20", "1-12"],
+        ..FINE
+    },
+    Bad {
+        what: "a name that leads elsewhere",
+        edit: ("\n[[body]]", "name = \"../evil\"\n[[body]]"),
+        says: &["plate.toml:1:", "../evil", "name = "],
+        ..FINE
+    },
+    Bad {
+        what: "a name with a line break",
+        arguments: &["run", "plate.toml", "--set", "name=\"a\\nb\""],
+        says: &["a\\nb", "plain file name"],
         ..FINE
     },
     Bad {

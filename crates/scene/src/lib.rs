@@ -18,6 +18,7 @@ mod presets;
 mod regular_file;
 mod scene;
 mod settings;
+mod simulation_hash;
 mod take;
 mod toughness;
 mod validate;

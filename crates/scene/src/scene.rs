@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub struct Scene {
     /// Name, used as prefix of files.
     pub name: String,
-    /// SHA-256 over the scene file, the overrides and the drawings, in hexadecimal.
+    /// [`Scene::simulation_hash`]: of all that the frames depend on.
     pub hash: String,
     /// Plane strain or plane stress.
     pub plane: PlaneState,

@@ -1,98 +1,11 @@
 //! Takes: frames come back bit for bit, equal frames give equal bytes, and damage is told.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod common;
+
+use common::take::{frame, listing, provenance, scene};
+use fissure_files::Folder;
 use fissure_scene::*;
-use std::path::Path;
-
-fn scene() -> Scene {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("pull.toml");
-    std::fs::write(&path, template()).unwrap();
-    load(&path, &["solver.crack_friction=inf".into()]).unwrap()
-}
-
-fn provenance() -> Provenance {
-    Provenance { tool_version: "0.1.0".into(), seed: 7 }
-}
-
-/// A frame in which every number differs, some of them hard to write as text.
-fn frame(number: i64) -> Frame {
-    let mut count = 0.0;
-    let mut next = || {
-        count += 1.0;
-        (number as f64 + 0.1) / 3.0 * count
-    };
-    let n = 5;
-    let point = |f: &mut dyn FnMut() -> f64| Point::new(f(), f());
-    let mut points = |m: usize| (0..m).map(|_| point(&mut next)).collect::<Vec<_>>();
-    let vectors = |p: Vec<Point>| p.into_iter().map(|p| p.coords).collect::<Vec<_>>();
-    let matrices = |p: Vec<Point>| p.into_iter().map(|p| Matrix::new(p.x, p.y, -p.x, 2.0 * p.y)).collect::<Vec<_>>();
-    Frame {
-        number,
-        time: number as f64 / 3.0,
-        particles: ParticleFrame {
-            id: (0..n as u32).collect(),
-            body: vec![0; n],
-            piece: vec![u32::MAX; n],
-            rest: points(n),
-            position: points(n),
-            velocity: vectors(points(n)),
-            deformation_gradient: matrices(points(n)),
-            cauchy_stress: matrices(points(n)),
-        },
-        outlines: [3, 0, 4]
-            .into_iter()
-            .enumerate()
-            .map(|(ring, m)| OutlineFrame {
-                body: 0,
-                ring: ring as u32,
-                rest: points(m),
-                position: points(m),
-                velocity: vectors(points(m)),
-            })
-            .collect(),
-        cracks: vec![CrackFrame {
-            crack: 0,
-            body: 0,
-            rest: points(3),
-            above: points(3),
-            below: points(3),
-            above_velocity: vectors(points(3)),
-            below_velocity: vectors(points(3)),
-            start: CrackEnd::Mouth,
-            end: CrackEnd::Junction { crack: 4 },
-        }],
-        tips: vec![TipRecord {
-            crack: 0,
-            end: End::End,
-            state: TipState::GuideEnded,
-            position: Point::new(-0.0, f64::MIN_POSITIVE),
-            direction: 0.1,
-            j_integral: 0.2,
-            mode_1: 1e6,
-            mode_2: -1e-300,
-            kink_angle: 0.3,
-            equivalent: 0.4,
-            fracture_toughness: 0.5,
-            speed: 0.6,
-            length: 0.7,
-            contour_radius: 0.8,
-            radius_shrunk: true,
-        }],
-        energies: Energies { kinetic: 1.0, strain: 2.0, external_work: 3.0, crack: 4.0 },
-        colliders: vec![Pose { position: Point::new(1.0, 2.0), angle: 0.25 }],
-    }
-}
-
-fn listing(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    let mut files: Vec<_> = std::fs::read_dir(folder)
-        .unwrap()
-        .map(|e| e.unwrap())
-        .map(|e| (e.file_name().into_string().unwrap(), std::fs::read(e.path()).unwrap()))
-        .collect();
-    files.sort();
-    files
-}
 
 #[test]
 fn frames_come_back_bit_for_bit() {
@@ -112,96 +25,285 @@ fn frames_come_back_bit_for_bit() {
     assert!(frame_to_bytes(&uneven).unwrap_err().contains("lengths"));
 }
 
+/// Writes the frames of `numbers` into a new take; the last one with its state.
+fn take_of(folder: &Folder, numbers: std::ops::RangeInclusive<i64>) {
+    let last = *numbers.end();
+    let opened = TakeWriter::open(folder, &scene(), provenance(), last).unwrap();
+    assert_eq!(opened.start, Start::First);
+    let mut writer = opened.writer;
+    for number in numbers {
+        let state = format!("state {number}");
+        writer.write_frame(&frame(number), (number == last).then_some(state.as_bytes())).unwrap();
+    }
+}
+
+/// Truth: what was written, and in which order things are on the disk.
 #[test]
-fn a_resumed_take_equals_an_uninterrupted_one() {
-    let scene = scene();
-    let (whole, broken) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
-    let mut writer = TakeWriter::create(whole.path(), &scene, provenance()).unwrap();
-    (1..=4).for_each(|n| writer.write_frame(&frame(n)).unwrap());
-    writer.write_state(b"state 4", 4).unwrap();
-    writer.finish().unwrap();
-
-    let mut writer = TakeWriter::create(broken.path(), &scene, provenance()).unwrap();
-    (1..=2).for_each(|n| writer.write_frame(&frame(n)).unwrap());
-    writer.write_state(b"state 2", 2).unwrap();
-    writer.write_frame(&frame(3)).unwrap();
-    drop(writer);
-    // As if the power went off in the middle of a row.
-    let tips = broken.path().join("tips.csv");
-    let text = std::fs::read_to_string(&tips).unwrap();
-    std::fs::write(&tips, &text[..text.len() - 5]).unwrap();
-
-    let (mut writer, state) = TakeWriter::resume(broken.path(), &scene, provenance()).unwrap();
-    assert_eq!(state, Some(SavedState { frame: 2, bytes: b"state 2".to_vec() }));
-    assert_eq!(Take::open(broken.path()).unwrap().frame_numbers(), [1, 2]);
-    (3..=4).for_each(|n| writer.write_frame(&frame(n)).unwrap());
-    writer.write_state(b"state 4", 4).unwrap();
-    writer.finish().unwrap();
-    assert_eq!(listing(whole.path()), listing(broken.path()));
-
-    let take = Take::open(whole.path()).unwrap();
-    assert!(take.is_complete());
-    assert_eq!(take.scene(), &scene);
+fn a_take_is_read_as_it_was_written() {
+    let folder = tempfile::tempdir().unwrap();
+    take_of(&Folder::new(folder.path()), 1..=4);
+    let take = Take::open(folder.path()).unwrap();
+    assert_eq!((take.scene(), take.frame_numbers()), (&scene(), vec![1, 2, 3, 4]));
     assert_eq!(take.frame(3).unwrap(), frame(3));
-    assert_eq!(listing(whole.path()).len(), 4 + 4);
-    let energy = std::fs::read_to_string(whole.path().join("energy.csv")).unwrap();
+    assert!(!take.is_complete() && take.remarks().unwrap().is_empty());
+    assert_eq!(listing(folder.path()).len(), 4 + 5);
+    let energy = std::fs::read_to_string(folder.path().join("energy.csv")).unwrap();
     assert_eq!(energy.lines().count(), 5);
 }
 
+/// A scene that computes the same goes on in the same take, whose meshes follow the scene as it is now.
 #[test]
-fn without_a_usable_state_a_take_begins_anew() {
-    let scene = scene();
+fn what_the_frames_do_not_depend_on_may_change() {
     let folder = tempfile::tempdir().unwrap();
-    let mut writer = TakeWriter::create(folder.path(), &scene, provenance()).unwrap();
-    writer.write_frame(&frame(1)).unwrap();
-    writer.write_state(b"state", 1).unwrap();
-    let state = folder.path().join("state.bin");
-    let mut bytes = std::fs::read(&state).unwrap();
-    bytes.pop();
-    std::fs::write(&state, bytes).unwrap();
-    assert!(Take::open(folder.path()).unwrap().state().unwrap_err().to_string().contains("state.bin"));
-    let (_, saved) = TakeWriter::resume(folder.path(), &scene, provenance()).unwrap();
-    assert_eq!(saved, None);
-    assert!(Take::open(folder.path()).unwrap().frame_numbers().is_empty());
-    assert!(!folder.path().join("frame.0001.safetensors").exists());
+    let inside = Folder::new(folder.path());
+    take_of(&inside, 1..=3);
+    let mut edited = scene();
+    edited.output.thickness = 7.0;
+    edited.output.formats = vec![Format::Ply];
+    edited.bodies[0].name = "pane".into();
+    edited.frames.last = 3;
+    edited.hash = edited.simulation_hash();
+    assert_eq!(edited.hash, scene().hash);
+    let opened = TakeWriter::open(&inside, &edited, provenance(), 3).unwrap();
+    assert_eq!((opened.start, opened.remarks), (Start::Complete, vec![]));
+    let take = Take::open(folder.path()).unwrap();
+    assert_eq!((take.scene(), take.is_complete()), (&edited, true));
+    // Longer: it goes on where it stopped.
+    edited.frames.last = 9;
+    let opened = TakeWriter::open(&inside, &edited, provenance(), 9).unwrap();
+    assert_eq!(opened.start, Start::At(SavedState { frame: 3, bytes: b"state 3".to_vec() }));
 
-    let mut other = scene.clone();
-    other.growth.bending = 2.0;
-    let error = TakeWriter::resume(folder.path(), &other, provenance()).unwrap_err();
-    assert!(matches!(error, TakeError::OtherScene { .. }), "{error}");
+    type Change = fn(&mut Scene);
+    let changes: [(&str, Change); 6] = [
+        ("growth", |s| s.growth.bending = 2.0),
+        ("material", |s| s.materials[0].density *= 1.0 + f64::EPSILON),
+        ("rate", |s| s.frames.rate = 25.0),
+        ("first frame", |s| s.frames.first = 0),
+        ("crack", |s| s.cracks[0].points[0].x += 1e-9),
+        ("friction", |s| s.solver.crack_friction = 0.5),
+    ];
+    for (what, change) in changes {
+        let mut other = scene();
+        change(&mut other);
+        other.hash = other.simulation_hash();
+        let before = listing(folder.path());
+        let error = TakeWriter::open(&inside, &other, provenance(), 9).unwrap_err();
+        assert!(matches!(error, TakeError::OtherScene { .. }), "{what}: {error}");
+        assert_eq!(before, listing(folder.path()), "{what}");
+    }
+}
+
+/// Whatever cannot go on is told and stays as it is; what was begun anew on purpose replaces what is of a take and no more.
+#[test]
+fn what_cannot_go_on_is_told_and_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let inside = Folder::new(folder.path());
+    take_of(&inside, 1..=3);
+    std::fs::write(folder.path().join("thesis.txt"), "years of work").unwrap();
+    std::fs::write(folder.path().join("frame.0002.txt"), "years of work").unwrap();
+    std::fs::write(folder.path().join("frame.0077.safetensors"), "years of work").unwrap();
+    let whole = listing(folder.path());
+    let refused = |what: &str, provenance: Provenance, words: &[&str]| {
+        let before = listing(folder.path());
+        let error = TakeWriter::open(&inside, &scene(), provenance, 9).unwrap_err();
+        let told = format!("{error}; {}", error.remedy());
+        words.iter().for_each(|word| assert!(told.contains(word), "{what}: `{word}` is missing in: {told}"));
+        assert_eq!(before, listing(folder.path()), "{what}");
+    };
+    let newer = Provenance { tool_version: "0.2.0".into(), ..provenance() };
+    refused("another version", newer.clone(), &["0.1.0", "0.2.0", "--overwrite"]);
+    // With nothing left to compute any version will do.
+    assert_eq!(TakeWriter::open(&inside, &scene(), newer, 3).unwrap().start, Start::Complete);
+
+    let state = inside.read("state.bin").unwrap().unwrap();
+    for (what, bytes) in [
+        ("cut off", &state[..state.len() - 1]),
+        ("shorter than its head", &state[..20]),
+        ("empty", b""),
+        ("not one of ours", b"PK\x03\x04 a zip file"),
+    ] {
+        inside.write("state.bin", bytes).unwrap();
+        refused(what, provenance(), &["state.bin", "damaged", "remove the state", "--overwrite"]);
+        // When nothing is to be computed it is told, and does no harm.
+        let opened = TakeWriter::open(&inside, &scene(), provenance(), 3).unwrap();
+        assert_eq!(opened.start, Start::Complete, "{what}");
+        assert!(matches!(opened.remarks[..], [Remark::UnusableState(_)]), "{what}");
+    }
+    let list = inside.read("frames.jsonl").unwrap().unwrap();
+    let first = list.iter().position(|&byte| byte == b'\n').unwrap() + 1;
+    inside.write("state.bin", &state).unwrap();
+    inside.write("frames.jsonl", &list[..first]).unwrap();
+    refused("a state newer than the frames", provenance(), &["frame 3", "holds frame 1", "remove the state"]);
+    inside.write("frames.jsonl", &list[first..]).unwrap();
+    refused("a list without its first line", provenance(), &["frames.jsonl", "damaged", "frame 2"]);
+    inside.write("frames.jsonl", &list).unwrap();
+    assert_eq!(whole, listing(folder.path()));
+
+    let mut writer = TakeWriter::replace(&inside, &scene(), provenance()).unwrap();
+    let names: Vec<_> = listing(folder.path()).into_iter().map(|(name, _)| name).collect();
+    let begun = [
+        "energy.csv",
+        "frame.0002.txt",
+        "frame.0077.safetensors",
+        "frames.jsonl",
+        "manifest.json",
+        "thesis.txt",
+        "tips.csv",
+    ];
+    assert_eq!(names, begun);
+    // Nor is a file replaced that is no frame.
+    std::fs::write(folder.path().join("frame.0001.safetensors"), "years of work").unwrap();
+    assert!(matches!(writer.write_frame(&frame(1), None), Err(TakeError::Foreign { .. })));
+}
+
+/// Frames that are there already are computed again and compared, those that are missing come back.
+#[test]
+fn frames_that_are_missing_come_back_and_others_are_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    let inside = Folder::new(folder.path());
+    take_of(&inside, 1..=4);
+    let whole = listing(folder.path());
+    inside.remove("frame.0002.safetensors").unwrap();
+    let opened = TakeWriter::open(&inside, &scene(), provenance(), 4).unwrap();
+    assert_eq!((opened.start, opened.remarks), (Start::First, vec![Remark::MissingFrame(2)]));
+    let mut writer = opened.writer;
+    let mut other = frame(1);
+    other.energies.kinetic = 7.0;
+    let error = writer.write_frame(&other, None).unwrap_err();
+    assert!(matches!(error, TakeError::OtherFrame { number: 1, .. }), "{error}");
+    // A changed file of a frame that is computed again is mended.
+    let mut bytes = inside.read("frame.0001.safetensors").unwrap().unwrap();
+    *bytes.last_mut().unwrap() ^= 1;
+    inside.write("frame.0001.safetensors", &bytes).unwrap();
+    for number in 1..=4 {
+        let state = format!("state {number}");
+        writer.write_frame(&frame(number), (number == 4).then_some(state.as_bytes())).unwrap();
+    }
+    assert_eq!(whole, listing(folder.path()));
+}
+
+/// Flips bits all over every file of a take. Truth: reading tells of each, and reading what is whole tells of nothing.
+#[test]
+fn every_flipped_bit_is_noticed() {
+    let folder = tempfile::tempdir().unwrap();
+    let inside = Folder::new(folder.path());
+    take_of(&inside, 1..=2);
+    let noticed = || {
+        let Ok(take) = Take::open(folder.path()) else { return true };
+        let frames = take.frame_numbers().into_iter().all(|number| take.frame(number).is_ok());
+        !frames || take.frame_numbers() != [1, 2] || !take.remarks().unwrap().is_empty()
+    };
+    assert!(!noticed());
+    for (name, bytes) in listing(folder.path()) {
+        // Every bit of the beginning and of the end, and some 400 between.
+        let bits = 8 * bytes.len();
+        let between = (64 * 8..bits.saturating_sub(64 * 8)).step_by((bits / 400).max(1) | 1);
+        let ends = (0..bits.min(64 * 8)).chain(bits.saturating_sub(64 * 8)..bits);
+        for bit in ends.chain(between) {
+            let mut flipped = bytes.clone();
+            flipped[bit / 8] ^= 1 << (bit % 8);
+            std::fs::write(folder.path().join(&name), flipped).unwrap();
+            assert!(noticed(), "{name}, bit {bit} of {bits}");
+        }
+        std::fs::write(folder.path().join(&name), bytes).unwrap();
+    }
+}
+
+/// Tables hold nothing that is not in the frames.
+#[test]
+fn torn_and_changed_tables_are_made_anew() {
+    let folder = tempfile::tempdir().unwrap();
+    let inside = Folder::new(folder.path());
+    take_of(&inside, 1..=3);
+    let whole = listing(folder.path());
+    for name in ["tips.csv", "energy.csv"] {
+        let text = inside.read(name).unwrap().unwrap();
+        let mut changed = text.clone();
+        changed[text.len() / 2] ^= 1;
+        let longer = [&text[..], b"4,1e0,"].concat();
+        for (what, bytes) in
+            [("torn", &text[..text.len() - 3]), ("empty", b""), ("changed", &changed), ("longer", &longer)]
+        {
+            inside.write(name, bytes).unwrap();
+            let opened = TakeWriter::open(&inside, &scene(), provenance(), 3).unwrap();
+            let told = if what == "longer" { vec![] } else { vec![Remark::TableMadeAnew(name)] };
+            assert_eq!((opened.start, opened.remarks), (Start::Complete, told), "{what}");
+            assert_eq!(whole, listing(folder.path()), "{what}");
+        }
+        inside.remove(name).unwrap();
+        TakeWriter::open(&inside, &scene(), provenance(), 3).unwrap();
+        assert_eq!(whole, listing(folder.path()), "missing");
+    }
 }
 
 /// Each mistake names the file and a remedy.
 #[test]
 fn damage_is_told() {
-    let scene = scene();
     let folder = tempfile::tempdir().unwrap();
+    let inside = Folder::new(folder.path());
     let told = |error: TakeError, words: &[&str]| {
-        let told = error.to_string();
+        let told = format!("{error}; {}", error.remedy());
         words.iter().for_each(|word| assert!(told.contains(word), "`{word}` is missing in: {told}"));
     };
     told(Take::open(&folder.path().join("none")).unwrap_err(), &["none", "not a take", "fissure"]);
-    let mut writer = TakeWriter::create(folder.path(), &scene, provenance()).unwrap();
-    writer.write_frame(&frame(1)).unwrap();
+    take_of(&inside, 1..=1);
     let take = Take::open(folder.path()).unwrap();
-    told(take.frame(9).unwrap_err(), &["no frame 9", "1 to 1"]);
+    told(take.frame(9).unwrap_err(), &["no frame 9", "holds frame 1"]);
     let file = folder.path().join("frame.0001.safetensors");
     let bytes = std::fs::read(&file).unwrap();
     std::fs::write(&file, &bytes[..bytes.len() - 9]).unwrap();
     told(take.frame(1).unwrap_err(), &["frame.0001", "damaged", "again"]);
     std::fs::remove_file(&file).unwrap();
-    told(take.frame(1).unwrap_err(), &["frame.0001", "cannot read"]);
+    told(take.frame(1).unwrap_err(), &["frame.0001", "missing", "again"]);
 
     let manifest = folder.path().join("manifest.json");
     let text = std::fs::read_to_string(&manifest).unwrap();
-    std::fs::write(&manifest, text.replacen("\"version\": 1", "\"version\": 99", 1)).unwrap();
-    told(Take::open(folder.path()).unwrap_err(), &["manifest.json", "version 99", "version 1"]);
-    std::fs::write(&manifest, text.replace("frame.0001", "../../frame.0001")).unwrap();
-    told(Take::open(folder.path()).unwrap_err(), &["damaged", "../../frame"]);
+    std::fs::write(&manifest, text.replacen("\"version\": 2", "\"version\": 99", 1)).unwrap();
+    told(Take::open(folder.path()).unwrap_err(), &["manifest.json", "version 99", "version 2", "--overwrite"]);
+    std::fs::write(&manifest, text.replacen("\"seed\": 7", "\"seed\": 8", 1)).unwrap();
+    told(Take::open(folder.path()).unwrap_err(), &["manifest.json", "checksum", "--overwrite"]);
     std::fs::write(&manifest, "{\"name\": \"a web page\"}").unwrap();
     told(Take::open(folder.path()).unwrap_err(), &["not a take"]);
-    // A folder with somebody else's manifest is not written to.
-    told(TakeWriter::create(folder.path(), &scene, provenance()).unwrap_err(), &["not a take"]);
+    // A folder with somebody else's manifest is not written to, nor one with a table of somebody else.
+    type Open = fn(&Folder) -> Result<(), TakeError>;
+    let ways: [Open; 2] = [
+        |f| TakeWriter::open(f, &scene(), provenance(), 9).map(drop),
+        |f| TakeWriter::replace(f, &scene(), provenance()).map(drop),
+    ];
+    for open in ways {
+        told(open(&inside).unwrap_err(), &["not a take", "--output"]);
+        let other = tempfile::tempdir().unwrap();
+        std::fs::write(other.path().join("tips.csv"), "years of work").unwrap();
+        told(open(&Folder::new(other.path())).unwrap_err(), &["tips.csv", "in the way"]);
+        assert_eq!(listing(other.path()).len(), 1);
+    }
     // A file where the folder should be.
-    told(TakeWriter::create(&manifest, &scene, provenance()).unwrap_err(), &["manifest.json", "choose another"]);
+    told(
+        TakeWriter::open(&Folder::new(&manifest), &scene(), provenance(), 9).unwrap_err(),
+        &["manifest.json", "another place"],
+    );
+}
+
+/// A manifest that was made to steer who reads it out of the folder, its checksum right.
+#[test]
+fn a_take_cannot_reach_out_of_its_folder() {
+    for name in
+        ["../evil", "/x", "..", ".", "", " ", "a\nb", "a/b", "a\\b", "CON", "nul.txt", "com1", "a.", "a ", "a:b"]
+    {
+        let mut steered = scene();
+        steered.name = name.into();
+        let folder = tempfile::tempdir().unwrap();
+        let inside = Folder::new(folder.path());
+        TakeWriter::open(&inside, &steered, provenance(), 1).unwrap();
+        let error = Take::open(folder.path()).unwrap_err().to_string();
+        assert!(error.contains("manifest.json") && error.contains("name"), "{name:?}: {error}");
+    }
+    for name in ["plate", "plate-2", "Größe 3", "com", "console", "a.b", ".hidden", &"x".repeat(120)] {
+        let mut fine = scene();
+        fine.name = name.into();
+        assert_eq!(fine.validate(), Ok(()), "{name}");
+    }
+    let mut long = scene();
+    long.name = "x".repeat(121);
+    assert!(long.validate().is_err());
 }

@@ -79,6 +79,6 @@ pub enum SimulationError {
         cause: String,
     },
     /// A saved state does not belong to this scene or version.
-    #[error("the saved state cannot be used: {0}; start again without it")]
+    #[error("the saved state cannot be used: {0}")]
     BadState(String),
 }

@@ -22,7 +22,6 @@ use crate::scene::Scene;
 use drawing::LoadedDrawing;
 use picture::{Budget, Picture};
 use resolve::{Resolution, Resolver};
-use sha2::{Digest, Sha256};
 use source::SceneSource;
 use std::path::Path;
 
@@ -55,7 +54,7 @@ pub fn load_with_warnings(path: &Path, overrides: &[String]) -> Result<Loaded, L
     let resolver = Resolver::new(&document, drawing.as_ref(), &pictures, default_name(path));
     let Resolution { mut scene, origin, warnings } =
         resolver.resolve().map_err(|fault| LoadError::fault(&source, fault))?;
-    scene.hash = hash(&source, drawing.as_ref(), &pictures);
+    scene.hash = scene.simulation_hash();
     Ok(Loaded { scene, warnings, source, origin })
 }
 
@@ -73,18 +72,4 @@ fn default_name(path: &Path) -> String {
     let absolute = std::path::absolute(path).unwrap_or_else(|_| path.into());
     let folder = absolute.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
     folder.unwrap_or(stem)
-}
-
-/// SHA-256 over the scene file, the overrides, the drawing and its font, and the images, each with its length in front.
-fn hash(source: &SceneSource, drawing: Option<&LoadedDrawing>, pictures: &[Option<Picture>]) -> String {
-    let mut sha = Sha256::new();
-    let mut add = |part: &[u8]| {
-        sha.update((part.len() as u64).to_le_bytes());
-        sha.update(part);
-    };
-    add(source.text.as_bytes());
-    source.override_arguments().for_each(|argument| add(argument.as_bytes()));
-    drawing.iter().flat_map(|d| &d.bytes).for_each(|bytes| add(bytes));
-    pictures.iter().flatten().for_each(|picture| add(&picture.bytes));
-    sha.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }

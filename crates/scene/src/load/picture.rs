@@ -8,8 +8,6 @@ use std::path::Path;
 /// A picture in shades of grey.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Picture {
-    /// The file, for the hash of the scene.
-    pub(crate) bytes: Vec<u8>,
     /// Pixels along x.
     pub(crate) columns: usize,
     /// Pixels along y.
@@ -60,7 +58,7 @@ impl Picture {
             ),
         })?;
         budget.pixels -= light.len() as u64;
-        Ok(Self { bytes, columns, rows: light.len() / columns, light })
+        Ok(Self { columns, rows: light.len() / columns, light })
     }
 
     /// Light of the picture with at most `columns` × `rows` pixels (each at least 1): means over the larger pixels. Gives
@@ -175,7 +173,7 @@ mod tests {
             let light: Vec<f64> =
                 (0..rows).flat_map(|j| (0..columns).map(move |i| at(i as f64 + 0.5, j as f64 + 0.5))).collect();
             let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
-            let picture = Picture { bytes: Vec::new(), columns, rows, light };
+            let picture = Picture { columns, rows, light };
             let (m, n, averaged) = picture.averaged(fewer, lower);
             prop_assert_eq!((m, n, averaged.len()), (fewer.min(columns), lower.min(rows), m * n));
             prop_assert!((mean(&averaged) - mean(&picture.light)).abs() < 1e-14);

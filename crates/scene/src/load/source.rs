@@ -97,11 +97,6 @@ impl SceneSource {
         }
         span
     }
-
-    /// The overrides as they were typed.
-    pub(crate) fn override_arguments(&self) -> impl Iterator<Item = &str> {
-        self.overrides.iter().map(|(_, set)| set.argument.as_str())
-    }
 }
 
 fn set_error(argument: &str, message: String, remedy: String) -> LoadError {

@@ -1,9 +1,13 @@
 //! `manifest.json`: what a take is.
 
-use super::{TakeError, files};
+use super::TakeError;
+use super::sealed::PAGE;
 use crate::scene::Scene;
+use fissure_files::Folder;
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+
+/// Name of the file.
+const NAME: &str = "manifest.json";
 
 /// What a take is, as written to `manifest.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -12,29 +16,14 @@ pub struct Manifest {
     pub format: String,
     /// Version of the format.
     pub version: u64,
-    /// Version of the program that wrote it.
+    /// Version of the program that computed the frames.
     pub tool_version: String,
-    /// Hash of the scene file, the overrides and the drawing.
+    /// [`Scene::simulation_hash`]: of all that the frames depend on.
     pub scene_hash: String,
     /// Seed of everything random.
     pub seed: u64,
-    /// Whether all frames of the scene are there.
-    pub complete: bool,
-    /// The frames there are, by rising number.
-    pub frames: Vec<FrameEntry>,
     /// The whole scene, every choice made.
     pub scene: Scene,
-}
-
-/// One frame of a take.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct FrameEntry {
-    /// Frame number.
-    pub number: i64,
-    /// Time [s].
-    pub time: f64,
-    /// File name within the take.
-    pub file: String,
 }
 
 /// Where a take comes from.
@@ -57,60 +46,66 @@ impl Manifest {
     /// Name of the format.
     pub const FORMAT: &str = "fissure-take";
     /// Version of the format that this program reads and writes.
-    pub const VERSION: u64 = 1;
+    pub const VERSION: u64 = 2;
 
-    pub(crate) fn new(scene: &Scene, provenance: Provenance) -> Self {
+    pub(super) fn new(scene: &Scene, provenance: Provenance) -> Self {
         Self {
             format: Self::FORMAT.into(),
             version: Self::VERSION,
             tool_version: provenance.tool_version,
             scene_hash: scene.hash.clone(),
             seed: provenance.seed,
-            complete: false,
-            frames: Vec::new(),
             scene: scene.clone(),
         }
     }
 
-    pub(crate) fn path(folder: &Path) -> PathBuf {
-        folder.join("manifest.json")
+    /// Whether the folder holds a manifest of a take, of whatever version and however damaged. None: it holds no manifest,
+    /// or an empty file, in which there is nothing to lose.
+    pub(super) fn is_there(folder: &Folder) -> Result<Option<bool>, TakeError> {
+        let bytes = folder.read(NAME)?.filter(|bytes| !bytes.is_empty());
+        let says_so = |bytes: Vec<u8>| {
+            let format = format!("\"{}\"", Self::FORMAT);
+            bytes.windows(format.len()).take(100).any(|window| window == format.as_bytes())
+        };
+        Ok(bytes.map(says_so))
     }
 
-    pub(crate) fn read(folder: &Path) -> Result<Self, TakeError> {
-        let path = Self::path(folder);
-        let bytes = std::fs::read(&path).map_err(|cause| match cause.kind() {
-            std::io::ErrorKind::NotFound => {
-                TakeError::NotATake { path: folder.into(), cause: "it has no manifest.json".into() }
-            }
-            _ => TakeError::io("read", &path)(cause),
-        })?;
-        let head: Head = serde_json::from_slice(&bytes).map_err(|e| TakeError::NotATake {
-            path: path.clone(),
-            cause: format!("its manifest is not one of a take ({e})"),
+    pub(super) fn read(folder: &Folder) -> Result<Self, TakeError> {
+        let not_a_take = |cause: String| TakeError::NotATake { path: folder.path().into(), cause };
+        let bytes = folder.read(NAME)?.ok_or_else(|| not_a_take(format!("it has no {NAME}")))?;
+        let path = folder.place(NAME)?;
+        let head: Head = serde_json::from_slice(&bytes).map_err(|error| match Self::is_there(folder) {
+            Ok(Some(true)) => TakeError::damaged(&path, error),
+            _ => not_a_take(format!("its {NAME} is not one of a take ({error})")),
         })?;
         if head.format != Self::FORMAT {
-            return Err(TakeError::NotATake { path, cause: format!("its format is `{}`", head.format) });
+            return Err(not_a_take(format!("its {NAME} is of the format `{}`", head.format.escape_debug())));
         }
         if head.version != Self::VERSION {
             return Err(TakeError::Version { path, found: head.version });
         }
-        let manifest: Self = serde_json::from_slice(&bytes).map_err(|e| TakeError::damaged(&path, e))?;
-        // Names are joined to the folder: they must stay in it.
-        if let Some(entry) = manifest.frames.iter().find(|f| f.file != file_name(f.number)) {
-            return Err(TakeError::damaged(&path, format!("frame {} is in a file `{}`", entry.number, entry.file)));
+        let text = std::str::from_utf8(&bytes).map_err(|error| TakeError::damaged(&path, error))?;
+        if !PAGE.holds(text) {
+            return Err(TakeError::damaged(&path, "its checksum does not fit"));
         }
+        let manifest: Self = serde_json::from_str(text).map_err(|error| TakeError::damaged(&path, error))?;
+        // Names of files are made from it, and numbers from it are relied on.
+        manifest
+            .scene
+            .validate()
+            .map_err(|fault| TakeError::damaged(&path, format!("its scene is not valid: {fault}")))?;
         Ok(manifest)
     }
 
-    pub(crate) fn write(&self, folder: &Path) -> Result<(), TakeError> {
-        let path = Self::path(folder);
-        let mut bytes = serde_json::to_vec_pretty(self).map_err(|e| TakeError::damaged(&path, e))?;
-        bytes.push(b'\n');
-        files::write_whole(&path, &bytes)
+    /// Writes the file; [`Folder::sync`] is left to the caller.
+    pub(super) fn write(&self, folder: &Folder) -> Result<(), TakeError> {
+        let text =
+            serde_json::to_string_pretty(self).map_err(|error| TakeError::damaged(&folder.path().join(NAME), error))?;
+        Ok(folder.write(NAME, PAGE.seal(&text).as_bytes())?)
     }
-}
 
-/// Name of the file of a frame: `frame.0001.safetensors`.
-pub(crate) fn file_name(number: i64) -> String {
-    format!("frame.{number:04}.safetensors")
+    /// Removes the file.
+    pub(super) fn remove(folder: &Folder) -> Result<(), TakeError> {
+        Ok(folder.remove(NAME)?)
+    }
 }

@@ -1,26 +1,35 @@
-//! A take: the folder that keeps a simulation. One safetensors file per frame, a manifest, two tables, the solver's state.
+//! A take: the folder that keeps a simulation.
 //!
 //! ```text
-//! take/manifest.json            format, version, tool, seed, the whole resolved scene, the frames there are
+//! take/manifest.json            format, version, tool, seed, the whole resolved scene; written once
+//! take/frames.jsonl             one line per frame: number, time, files and table rows with their checksums; only appended to
 //! take/frame.0001.safetensors   one frame; names and shapes of its tensors: see `tensors`
 //! take/tips.csv                 one row per crack tip and frame
 //! take/energy.csv               one row per frame
-//! take/state.bin                the solver's state at the last frame, to go on from
+//! take/state.bin                the solver's state at some frame, to go on from
 //! ```
-//! Every file but the tables is written under a temporary name and renamed, so that a reader never sees half of one.
+//! A frame is in the take when its line is in the list, and its line is added only when its file is on the disk. So a take
+//! is sound at every moment, for readers too, and [`TakeWriter::open`] goes on from whatever a death has left: `opening`
+//! says how. Each byte is under some checksum: `sealed` for the two JSON files, the list for frames and tables, its own
+//! for the state. Writing n frames writes O(n) bytes.
+//!
 //! Equal frames give equal bytes; nothing in a take depends on the time of day.
 
 mod error;
-mod files;
+mod list;
 mod manifest;
+mod opening;
 mod read;
+mod sealed;
 mod state;
 mod tables;
 mod tensors;
 mod write;
 
 pub use error::TakeError;
-pub use manifest::{FrameEntry, Manifest, Provenance};
+pub use list::{FileEntry, FrameEntry};
+pub use manifest::{Manifest, Provenance};
+pub use opening::{Opened, Remark, Start};
 pub use read::Take;
 pub use state::SavedState;
 pub use tensors::{frame_from_bytes, frame_to_bytes};

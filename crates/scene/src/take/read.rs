@@ -1,24 +1,39 @@
-//! Reading a take.
+//! Reading a take, also while it is being written.
 
-use super::{Manifest, SavedState, TakeError, frame_from_bytes, state};
+use super::list::{self, FrameEntry};
+use super::opening::Remark;
+use super::tables::TABLES;
+use super::{Manifest, TakeError, frame_from_bytes, state};
 use crate::frame::Frame;
 use crate::scene::Scene;
-use std::path::{Path, PathBuf};
+use fissure_files::Folder;
+use std::path::Path;
 
-/// A take on disk.
+/// A take on disk, as it was when it was opened.
 #[derive(Debug, Clone)]
 pub struct Take {
-    folder: PathBuf,
+    folder: Folder,
     manifest: Manifest,
+    entries: Vec<FrameEntry>,
 }
 
 impl Take {
+    /// Opens the take in a folder of this machine.
+    ///
+    /// # Errors
+    /// When there is none, it is of another version, or its manifest or its list of frames is damaged.
+    pub fn open(folder: &Path) -> Result<Self, TakeError> {
+        Self::read(&Folder::new(folder))
+    }
+
     /// Opens the take in `folder`.
     ///
     /// # Errors
-    /// When there is none, it is of another version, or its manifest is damaged.
-    pub fn open(folder: &Path) -> Result<Self, TakeError> {
-        Ok(Self { folder: folder.into(), manifest: Manifest::read(folder)? })
+    /// As [`Take::open`].
+    pub fn read(folder: &Folder) -> Result<Self, TakeError> {
+        let manifest = Manifest::read(folder)?;
+        let entries = list::read(folder, manifest.scene.frames.first)?.entries;
+        Ok(Self { folder: folder.clone(), manifest, entries })
     }
 
     /// The scene it was made from.
@@ -31,14 +46,19 @@ impl Take {
         &self.manifest
     }
 
+    /// The frames there are, by rising number.
+    pub fn frames(&self) -> &[FrameEntry] {
+        &self.entries
+    }
+
     /// Whether all frames of the scene are there.
     pub fn is_complete(&self) -> bool {
-        self.manifest.complete
+        self.entries.last().is_some_and(|last| last.number >= self.scene().frames.last)
     }
 
     /// Numbers of the frames there are, rising.
     pub fn frame_numbers(&self) -> Vec<i64> {
-        self.manifest.frames.iter().map(|f| f.number).collect()
+        self.entries.iter().map(|entry| entry.number).collect()
     }
 
     /// One frame, bit for bit as it was written.
@@ -46,28 +66,47 @@ impl Take {
     /// # Errors
     /// When there is no such frame, or its file is missing, cut off or changed.
     pub fn frame(&self, number: i64) -> Result<Frame, TakeError> {
-        let entry = self.manifest.frames.iter().find(|f| f.number == number).ok_or_else(|| {
-            let numbers = self.frame_numbers();
-            let have = match (numbers.first(), numbers.last()) {
-                (Some(first), Some(last)) => format!("{first} to {last}"),
-                _ => "none".into(),
-            };
-            TakeError::NoFrame { path: self.folder.clone(), number, have }
-        })?;
-        let path = self.folder.join(&entry.file);
-        let bytes = std::fs::read(&path).map_err(TakeError::io("read", &path))?;
-        let frame = frame_from_bytes(&bytes).map_err(|cause| TakeError::damaged(&path, cause))?;
-        if frame.number != number {
-            return Err(TakeError::damaged(&path, format!("it holds frame {}", frame.number)));
+        match self.entries.binary_search_by_key(&number, |entry| entry.number) {
+            Ok(at) => frame(&self.folder, &self.entries[at]),
+            Err(_) => {
+                let have = list::in_words(&self.entries);
+                Err(TakeError::NoFrame { path: self.folder.path().into(), number, have })
+            }
         }
-        Ok(frame)
     }
 
-    /// The solver's saved state, if there is one.
+    /// What is wrong with the files that no frame needs: the tables and the saved state.
     ///
     /// # Errors
-    /// When it is cut off or changed.
-    pub fn state(&self) -> Result<Option<SavedState>, TakeError> {
-        state::read(&self.folder)
+    /// When one cannot be read at all.
+    pub fn remarks(&self) -> Result<Vec<Remark>, TakeError> {
+        let mut remarks = Vec::new();
+        for table in TABLES {
+            let text = self.folder.read(table.name)?.unwrap_or_default();
+            if table.sound_length(&text, &self.entries).is_none() {
+                remarks.push(Remark::DamagedTable(table.name));
+            }
+        }
+        match state::read(&self.folder) {
+            Err(error @ TakeError::DamagedState { .. }) => remarks.push(Remark::UnusableState(error.to_string())),
+            other => drop(other?),
+        }
+        Ok(remarks)
     }
+}
+
+/// The frame of `entry`, held against its checksum.
+pub(super) fn frame(folder: &Folder, entry: &FrameEntry) -> Result<Frame, TakeError> {
+    // The list has been read with one file for each frame.
+    let (file, name) = (entry.files.first(), list::file_name(entry.number));
+    let path = folder.place(&name)?;
+    let bytes = folder.read(&name)?.ok_or_else(|| TakeError::damaged_frame(&path, "it is missing"))?;
+    if !file.is_some_and(|file| file.fits(&bytes)) {
+        return Err(TakeError::damaged_frame(&path, "its checksum does not fit"));
+    }
+    let frame = frame_from_bytes(&bytes).map_err(|cause| TakeError::damaged_frame(&path, cause))?;
+    if frame.number != entry.number {
+        return Err(TakeError::damaged_frame(&path, format!("it holds frame {}", frame.number)));
+    }
+    Ok(frame)
 }

@@ -1,11 +1,12 @@
 //! `state.bin`: the solver's state at a frame, whole or not at all.
 
-use super::{TakeError, files};
+use super::TakeError;
+use fissure_files::Folder;
 use sha2::{Digest, Sha256};
-use std::path::Path;
 
-const MAGIC: &[u8; 16] = b"fissure-state-1\n";
-const HEAD: usize = MAGIC.len() + 8 + 32;
+/// Name of the file.
+pub(super) const NAME: &str = "state.bin";
+const MAGIC: &[u8; 16] = b"fissure-state-2\n";
 
 /// A state to go on from.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -16,31 +17,27 @@ pub struct SavedState {
     pub bytes: Vec<u8>,
 }
 
-/// Layout: magic, frame number, SHA-256 of the state, the state.
-pub(crate) fn write(folder: &Path, state: &[u8], frame: i64) -> Result<(), TakeError> {
-    let mut bytes = Vec::with_capacity(HEAD + state.len());
+/// Layout: magic, SHA-256 of all that follows, frame number, the state.
+pub(super) fn write(folder: &Folder, state: &[u8], frame: i64) -> Result<(), TakeError> {
+    let mut bytes = Vec::with_capacity(MAGIC.len() + 32 + 8 + state.len());
     bytes.extend_from_slice(MAGIC);
+    bytes.extend_from_slice(&Sha256::new().chain_update(frame.to_le_bytes()).chain_update(state).finalize());
     bytes.extend_from_slice(&frame.to_le_bytes());
-    bytes.extend_from_slice(&Sha256::digest(state));
     bytes.extend_from_slice(state);
-    files::write_whole(&folder.join("state.bin"), &bytes)
+    folder.write(NAME, &bytes)?;
+    Ok(folder.sync()?)
 }
 
 /// The saved state; none when there is no file.
-pub(crate) fn read(folder: &Path) -> Result<Option<SavedState>, TakeError> {
-    let path = folder.join("state.bin");
-    let bytes = match std::fs::read(&path) {
-        Ok(bytes) => bytes,
-        Err(cause) if cause.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-        Err(cause) => return Err(TakeError::io("read", &path)(cause)),
-    };
-    let body = bytes.strip_prefix(MAGIC).ok_or_else(|| TakeError::damaged(&path, "it does not begin as a state"))?;
-    let (Some((frame, rest)), true) = (body.split_first_chunk::<8>(), bytes.len() >= HEAD) else {
-        return Err(TakeError::damaged(&path, "it is cut off"));
-    };
-    let (digest, state) = rest.split_at(32);
-    if Sha256::digest(state).as_slice() != digest {
-        return Err(TakeError::damaged(&path, "its checksum does not fit"));
+pub(super) fn read(folder: &Folder) -> Result<Option<SavedState>, TakeError> {
+    let path = folder.place(NAME)?;
+    let Some(bytes) = folder.read(NAME)? else { return Ok(None) };
+    let damaged = |cause| TakeError::damaged_state(&path, cause);
+    let body = bytes.strip_prefix(MAGIC).ok_or_else(|| damaged("it does not begin as a state"))?;
+    let (digest, rest) = body.split_first_chunk::<32>().ok_or_else(|| damaged("it is cut off"))?;
+    let (frame, state) = rest.split_first_chunk::<8>().ok_or_else(|| damaged("it is cut off"))?;
+    if Sha256::digest(rest).as_slice() != digest {
+        return Err(damaged("its checksum does not fit"));
     }
     Ok(Some(SavedState { frame: i64::from_le_bytes(*frame), bytes: state.to_vec() }))
 }

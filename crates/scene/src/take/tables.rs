@@ -1,41 +1,104 @@
-//! `tips.csv` and `energy.csv`: what people plot.
+//! `tips.csv` and `energy.csv`: what people plot. They hold nothing that is not in the frames, and are written anew from
+//! these where they are torn or changed.
 
-use super::{TakeError, files};
+use super::list::{FileEntry, FrameEntry};
+use super::{TakeError, read};
 use crate::frame::{End, Frame, TipState};
+use fissure_files::Folder;
 use std::fmt::Write as _;
-use std::io::Write as _;
-use std::path::Path;
 
-const TIPS: &str = "tips.csv";
-const TIPS_HEAD: &str = "frame,time,crack,end,state,x,y,direction,j_integral,mode_1,mode_2,kink_angle,equivalent,\
-                         fracture_toughness,speed,length,contour_radius,radius_shrunk\n";
-const ENERGY: &str = "energy.csv";
-const ENERGY_HEAD: &str = "frame,time,kinetic,strain,external_work,crack\n";
-
-/// Starts both tables.
-pub(crate) fn create(folder: &Path) -> Result<(), TakeError> {
-    files::write_whole(&folder.join(TIPS), TIPS_HEAD.as_bytes())?;
-    files::write_whole(&folder.join(ENERGY), ENERGY_HEAD.as_bytes())
+/// One table.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Table {
+    /// Name of its file.
+    pub(super) name: &'static str,
+    /// Its first line.
+    head: &'static str,
+    /// The rows that a frame adds.
+    rows: fn(&Frame) -> String,
 }
 
-/// Takes the rows of frames after `last` off, and a row that was cut off in the middle.
-pub(crate) fn truncate(folder: &Path, last: i64) -> Result<(), TakeError> {
-    for (name, head) in [(TIPS, TIPS_HEAD), (ENERGY, ENERGY_HEAD)] {
-        let path = folder.join(name);
-        let text = std::fs::read_to_string(&path).map_err(TakeError::io("read", &path))?;
-        let kept = text.split_inclusive('\n').skip(1).filter(|row| {
-            row.ends_with('\n') && row.split(',').next().and_then(|n| n.parse::<i64>().ok()).is_some_and(|n| n <= last)
-        });
-        let text: String = std::iter::once(head).chain(kept).collect();
-        files::write_whole(&path, text.as_bytes())?;
+/// All tables, in the order in which the list of frames has their rows.
+pub(super) const TABLES: [Table; 2] = [
+    Table {
+        name: "tips.csv",
+        head: "frame,time,crack,end,state,x,y,direction,j_integral,mode_1,mode_2,kink_angle,equivalent,\
+               fracture_toughness,speed,length,contour_radius,radius_shrunk\n",
+        rows: tip_rows,
+    },
+    Table { name: "energy.csv", head: "frame,time,kinetic,strain,external_work,crack\n", rows: energy_row },
+];
+
+impl Table {
+    /// Length of the part of `text` that the list of frames accounts for; none when that part is not as it was written.
+    pub(super) fn sound_length(self, text: &[u8], entries: &[FrameEntry]) -> Option<usize> {
+        let mut rest = text.strip_prefix(self.head.as_bytes())?;
+        for entry in entries {
+            let rows = entry.rows.iter().find(|rows| rows.name == self.name)?;
+            let (these, after) = rest.split_at_checked(usize::try_from(rows.bytes).ok()?)?;
+            if !rows.fits(these) {
+                return None;
+            }
+            rest = after;
+        }
+        Some(text.len() - rest.len())
     }
-    Ok(())
+
+    /// Brings the table to the frames that are listed: rows of later ones go, and where it is not as it was written all of
+    /// it is made anew from the frames. Returns whether that was so.
+    fn repair(self, folder: &Folder, entries: &[FrameEntry]) -> Result<bool, TakeError> {
+        let text = folder.read(self.name)?.unwrap_or_default();
+        match self.sound_length(&text, entries) {
+            Some(length) if length == text.len() => Ok(false),
+            Some(length) => Ok(folder.write(self.name, &text[..length]).map(|()| false)?),
+            None => {
+                let mut text = self.head.to_owned();
+                for entry in entries {
+                    text += &(self.rows)(&read::frame(folder, entry)?);
+                }
+                folder.write(self.name, text.as_bytes())?;
+                Ok(true)
+            }
+        }
+    }
 }
 
-/// Adds the rows of one frame.
-pub(crate) fn append(folder: &Path, frame: &Frame) -> Result<(), TakeError> {
+/// Starts all tables; [`Folder::sync`] is left to the caller.
+pub(super) fn create(folder: &Folder) -> Result<(), TakeError> {
+    Ok(TABLES.iter().try_for_each(|table| folder.write(table.name, table.head.as_bytes()))?)
+}
+
+/// Whether there is nothing in `text` but the first line of one of the tables.
+pub(super) fn is_fresh(text: &[u8]) -> bool {
+    TABLES.iter().any(|table| table.head.as_bytes() == text)
+}
+
+/// Brings all tables to the frames that are listed; returns the names of those that had to be made anew.
+pub(super) fn repair(folder: &Folder, entries: &[FrameEntry]) -> Result<Vec<&'static str>, TakeError> {
+    let mut made = Vec::new();
+    for table in TABLES {
+        if table.repair(folder, entries)? {
+            made.push(table.name);
+        }
+    }
+    Ok(made)
+}
+
+/// Adds the rows of one frame; says what they are.
+pub(super) fn append(folder: &Folder, frame: &Frame) -> Result<Vec<FileEntry>, TakeError> {
+    let mut added = Vec::new();
+    for table in TABLES {
+        let rows = (table.rows)(frame);
+        folder.append(table.name, rows.as_bytes())?;
+        added.push(FileEntry::new(table.name, rows.as_bytes()));
+    }
+    Ok(added)
+}
+
+fn tip_rows(frame: &Frame) -> String {
     let mut rows = String::new();
     for t in &frame.tips {
+        // Writing to a string cannot fail.
         let _ =
             write!(rows, "{},{:e},{},{},{}", frame.number, frame.time, t.crack, end_word(t.end), state_word(t.state));
         let numbers = [
@@ -57,18 +120,12 @@ pub(crate) fn append(folder: &Path, frame: &Frame) -> Result<(), TakeError> {
         });
         let _ = writeln!(rows, ",{}", u8::from(t.radius_shrunk));
     }
-    add(&folder.join(TIPS), &rows)?;
-    let e = &frame.energies;
-    let row = format!(
-        "{},{:e},{:e},{:e},{:e},{:e}\n",
-        frame.number, frame.time, e.kinetic, e.strain, e.external_work, e.crack
-    );
-    add(&folder.join(ENERGY), &row)
+    rows
 }
 
-fn add(path: &Path, rows: &str) -> Result<(), TakeError> {
-    let file = std::fs::OpenOptions::new().append(true).open(path);
-    file.and_then(|mut file| file.write_all(rows.as_bytes())).map_err(TakeError::io("write", path))
+fn energy_row(frame: &Frame) -> String {
+    let e = &frame.energies;
+    format!("{},{:e},{:e},{:e},{:e},{:e}\n", frame.number, frame.time, e.kinetic, e.strain, e.external_work, e.crack)
 }
 
 fn end_word(end: End) -> &'static str {

@@ -26,6 +26,9 @@ use safetensors::tensor::{Dtype, SafeTensors, View, serialize};
 use std::borrow::Cow;
 use std::collections::HashMap;
 
+/// What the file says it is.
+const FORMAT: &str = "fissure-frame 1";
+
 /// Order in which tip states are numbered.
 const STATES: [TipState; 6] = [
     TipState::Resting,
@@ -209,8 +212,15 @@ pub fn frame_to_bytes(frame: &Frame) -> Result<Vec<u8>, String> {
     t.numbers("colliders.angle", frame.colliders.iter().map(|pose| pose.angle));
 
     // One entry only: the header keeps the order of a hash map.
-    let about = HashMap::from([("format".to_owned(), "fissure-frame 1".to_owned())]);
+    let about = HashMap::from([("format".to_owned(), FORMAT.to_owned())]);
     serialize(t.0.iter().map(|(name, tensor)| (name.as_str(), tensor)), Some(about)).map_err(|e| e.to_string())
+}
+
+/// Whether the bytes say that they are a frame, whole or not: the first entry of the header of a safetensors file is what
+/// the file is.
+pub(super) fn is_frame(bytes: &[u8]) -> bool {
+    let start = format!("{{\"__metadata__\":{{\"format\":\"{FORMAT}\"");
+    bytes.get(8..).is_some_and(|header| header.starts_with(start.as_bytes()))
 }
 
 /// A frame from the bytes of a safetensors file, bit for bit as it was.

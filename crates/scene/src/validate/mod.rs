@@ -4,6 +4,7 @@ mod count;
 mod cracks;
 mod curve;
 mod motion;
+mod name;
 mod range;
 mod region;
 mod settings;
@@ -23,6 +24,7 @@ use crate::fault::{KeyPath, SceneFault, short};
 use crate::geometry::Vector;
 use crate::scene::Scene;
 use motion::validate_collider;
+use name::{validate_file_name, validate_word};
 
 type Check = Result<(), SceneFault>;
 
@@ -47,6 +49,7 @@ impl Scene {
     /// The first fault found.
     pub fn validate(&self) -> Check {
         let gravity = self.gravity;
+        validate_file_name(KeyPath::top("name"), &self.name)?;
         self.validate_counts()?;
         ACCELERATION.check_pair(KeyPath::top("gravity"), "gravity", [gravity.x, gravity.y])?;
         self.validate_materials()?;
@@ -83,6 +86,7 @@ impl Scene {
     fn validate_materials(&self) -> Check {
         for (i, m) in self.materials.iter().enumerate() {
             let path = KeyPath::item("material", i);
+            validate_word(path.then("name"), "material", &m.name)?;
             let check = |key: &str, words: &str, range: Range, value: f64| {
                 range.check(path.then(key), &format!("{words} of material `{}`", m.name), value)
             };
@@ -157,7 +161,7 @@ fn unique_name<'a>(path: &KeyPath, what: &str, name: &str, mut before: impl Iter
         };
         return Err(SceneFault::new(path.then("name"), message, "give each its own name"));
     }
-    Ok(())
+    validate_word(path.then("name"), what, name)
 }
 
 /// A unit vector, or the vector itself when it has no direction (which [`Scene::validate`] reports).

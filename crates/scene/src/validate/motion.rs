@@ -72,6 +72,7 @@ impl Scene {
 
 pub(super) fn validate_collider(path: &KeyPath, collider: &Collider) -> Check {
     let name = &collider.name;
+    super::validate_word(path.then("name"), "collider", name)?;
     FRICTION.check(path.then("friction"), &format!("the friction of collider `{name}`"), collider.friction)?;
     let shape = path.then("shape");
     match &collider.shape {

@@ -1,6 +1,8 @@
 //! Scenes in folders of their own.
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used)]
 
+pub mod take;
+
 use fissure_scene::{Region, Scene, ToughnessKind, ToughnessPatch, load};
 use png::{BitDepth, ColorType};
 use std::path::{Path, PathBuf};

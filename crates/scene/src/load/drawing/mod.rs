@@ -52,8 +52,6 @@ const GAP: f64 = 2.0;
 
 /// A drawing, scaled to metres.
 pub(crate) struct LoadedDrawing {
-    /// The files it is made of, for the hash of the scene.
-    pub(crate) bytes: Vec<Vec<u8>>,
     names: Names,
     effects: Effects,
     views: Views,
@@ -119,8 +117,7 @@ impl LoadedDrawing {
         let views = Views::new(with_ids, fonts);
         let tree = views.tree(View::Drawn).map_err(|(message, _)| malformed(None, message))?;
         let (to_metres, size) = scale::scale(drawing, &document, tree.size()).map_err(fault)?;
-        let bytes = std::iter::once(text.as_bytes().to_vec()).chain(font.map(|(_, bytes)| bytes)).collect();
-        Ok(Self { bytes, names, effects, views, to_metres, size })
+        Ok(Self { names, effects, views, to_metres, size })
     }
 
     /// The regions that element `name` covers, from left to right, curves flattened to `tolerance` [m].
