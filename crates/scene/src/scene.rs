@@ -167,8 +167,8 @@ pub struct Guide {
 pub enum Selection {
     /// Everything.
     All,
-    /// One body, whole.
-    Body(usize),
+    /// These bodies, whole.
+    Bodies(Vec<usize>),
     /// Points within a region (edges included).
     Region(Region),
     /// Points within `radius` of one of `points` [m].
@@ -178,13 +178,27 @@ pub enum Selection {
         /// Distance [m].
         radius: f64,
     },
-    /// The points of the particle layer along one side of the bounding box of a body (or of all bodies).
+    /// The points of the particle layer along one side of the box around some bodies (or all): only what reaches that
+    /// side of the box as a whole.
     Edge {
         /// Which side.
         side: BoxSide,
-        /// Body; none: all.
-        body: Option<usize>,
+        /// Bodies; none: all.
+        bodies: Option<Vec<usize>>,
     },
+    /// The points of the particle layer along stretches of outlines; those that follow on each other meet in a point.
+    Outline(Vec<OutlineStretch>),
+}
+
+/// A straight stretch of the outline of a body.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct OutlineStretch {
+    /// The body.
+    pub body: usize,
+    /// Where it begins [m]; the material lies to the left of the way from here to `to`.
+    pub from: Point,
+    /// Where it ends [m].
+    pub to: Point,
 }
 
 /// A side of a bounding box.
@@ -241,7 +255,7 @@ pub struct Load {
 pub enum LoadKind {
     /// Total force per unit thickness, shared among the selected particles by their volume [N/m].
     Force(Vector),
-    /// Force per area of the selected edge [Pa]; needs [`Selection::Edge`].
+    /// Force per area of the selected edge [Pa]; needs [`Selection::Edge`] or [`Selection::Outline`].
     Traction(Vector),
     /// Force on the particle nearest to each point: (place [m], force per unit thickness [N/m]).
     PerPoint(Vec<(Point, Vector)>),

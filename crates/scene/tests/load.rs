@@ -19,7 +19,7 @@ fn the_template_loads() {
     assert_eq!((scene.frames.first, scene.frames.last, scene.frames.rate), (1, 48, 2400.0));
     // The mouth is a corner of the outline to the bit.
     assert!(scene.bodies[0].region.exterior.contains(&scene.cracks[0].points[0]));
-    assert_eq!(scene.loads[0].selection, Selection::Edge { side: BoxSide::Top, body: None });
+    assert_eq!(scene.loads[0].selection, Selection::Edge { side: BoxSide::Top, bodies: None });
     assert_eq!(scene.hash.len(), 64);
 }
 

@@ -23,6 +23,7 @@ mod particles;
 mod pieces;
 mod saved;
 mod scan;
+mod selector;
 mod simulation;
 mod solver;
 mod spans;

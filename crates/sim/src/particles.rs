@@ -2,8 +2,9 @@
 
 use crate::SimulationError;
 use crate::scan::Places;
+use crate::selector::Selector;
 use crate::spans::{Span, SpanRows};
-use fissure_scene::{Body, Point, Region, Scene, Selection, bounds};
+use fissure_scene::{Body, Point, Region, Scene, Selection, Vector, bounds};
 
 /// The particles of all bodies at rest, in the order body, row, column. Shape: one entry per particle in every list.
 #[derive(Debug, Clone)]
@@ -108,19 +109,36 @@ impl Particles {
     /// Numbers of the particles in `selection`, rising.
     pub(crate) fn select(&self, scene: &Scene, selection: &Selection) -> Vec<u32> {
         let s = self.spacing;
-        match selection {
-            Selection::Edge { side, body } => {
-                // The layer of particles whose domain touches the side of the box.
-                let edge = EdgeLine::of(scene, *side, *body);
-                self.filter(|p| body.is_none_or(|b| self.body[p] as usize == b) && edge.depth(self.rest[p]) < s)
-            }
-            _ => self.filter(|p| selects(scene, selection, self.rest[p], self.body[p] as usize, 0.0)),
-        }
+        let selector = Selector::new(scene, selection);
+        // Of an edge: the layer of particles whose domain touches it.
+        let is_selected = |p: &usize| selector.selects(self.rest[*p], self.body[*p] as usize, s, 0.0);
+        (0..self.len()).filter(is_selected).map(|p| p as u32).collect()
     }
 
-    fn filter(&self, mut keep: impl FnMut(usize) -> bool) -> Vec<u32> {
-        (0..self.len()).filter(|&p| keep(p)).map(|p| p as u32).collect()
+    /// How each particle moves at time zero.
+    pub(crate) fn first_motions(&self, scene: &Scene) -> Vec<FirstMotion> {
+        let mut motions = vec![FirstMotion { velocity: Vector::zeros(), angular_velocity: 0.0 }; self.len()];
+        for (index, body) in scene.bodies.iter().enumerate() {
+            for part in &body.velocities {
+                let selected = self.select(scene, &part.selection);
+                for p in selected.into_iter().map(|p| p as usize).filter(|&p| self.body[p] as usize == index) {
+                    let arm = self.rest[p] - part.center;
+                    motions[p].velocity += part.velocity + Vector::new(-arm.y, arm.x) * part.angular_velocity;
+                    motions[p].angular_velocity += part.angular_velocity;
+                }
+            }
+        }
+        motions
     }
+}
+
+/// How a particle moves at time zero.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FirstMotion {
+    /// [m/s].
+    pub(crate) velocity: Vector,
+    /// Counter-clockwise [rad/s].
+    pub(crate) angular_velocity: f64,
 }
 
 /// Spans of the particles in each row, numbered as they are. Of two particles in one place, where the outlines of bodies overlap by rounding, it holds the first.
@@ -174,75 +192,6 @@ fn available_memory() -> Option<u64> {
 /// Memory that `particles` particles take [bytes].
 pub(crate) fn memory(particles: usize) -> u64 {
     particles as u64 * BYTES_PER_PARTICLE
-}
-
-/// One side of the box around a body (or around all).
-#[derive(Debug, Clone, Copy)]
-struct EdgeLine {
-    side: fissure_scene::BoxSide,
-    at: f64,
-}
-
-impl EdgeLine {
-    /// The side of the box around `body`, or around all bodies.
-    fn of(scene: &Scene, side: fissure_scene::BoxSide, body: Option<usize>) -> Self {
-        use fissure_scene::BoxSide::{Bottom, Left, Right, Top};
-        let (mut low, mut high) = bounds(&[]);
-        for (_, b) in scene.bodies.iter().enumerate().filter(|(i, _)| body.is_none_or(|b| b == *i)) {
-            let (l, h) = b.region.bounds();
-            (low, high) = (low.inf(&l), high.sup(&h));
-        }
-        let at = match side {
-            Left => low.x,
-            Right => high.x,
-            Bottom => low.y,
-            Top => high.y,
-        };
-        Self { side, at }
-    }
-
-    /// Distance from the side into the box [m], negative outside.
-    fn depth(&self, point: Point) -> f64 {
-        use fissure_scene::BoxSide::{Bottom, Left, Right, Top};
-        match self.side {
-            Left => point.x - self.at,
-            Right => self.at - point.x,
-            Bottom => point.y - self.at,
-            Top => self.at - point.y,
-        }
-    }
-}
-
-/// Whether a place at rest belongs to `selection`, edges of it widened by `slack` [m].
-pub(crate) fn selects(scene: &Scene, selection: &Selection, place: Point, body: usize, slack: f64) -> bool {
-    match selection {
-        Selection::All => true,
-        Selection::Body(b) => *b == body,
-        Selection::Region(region) => {
-            region.contains(place) || distance_to_rings(region, place) <= slack.max(1e-9 * size(region))
-        }
-        Selection::Near { points, radius } => points.iter().any(|q| (place - q).norm() <= radius + slack),
-        Selection::Edge { side, body: of } => {
-            of.is_none_or(|b| b == body) && EdgeLine::of(scene, *side, *of).depth(place) <= slack
-        }
-    }
-}
-
-/// Whether the piece from `a` to `b` of a ring of `body` belongs to the edge that `selection` names.
-pub(crate) fn selects_piece(scene: &Scene, selection: &Selection, body: usize, a: Point, b: Point) -> bool {
-    let slack = 1e-6 * scene.cell_size;
-    match selection {
-        Selection::Edge { side, body: of } => {
-            let line = EdgeLine::of(scene, *side, *of);
-            of.is_none_or(|o| o == body) && line.depth(a).abs() <= slack && line.depth(b).abs() <= slack
-        }
-        _ => [a, b, nalgebra::center(&a, &b)].iter().all(|&p| selects(scene, selection, p, body, slack)),
-    }
-}
-
-fn size(region: &Region) -> f64 {
-    let (low, high) = region.bounds();
-    (high - low).norm()
 }
 
 /// Distance from `point` to the nearest ring of `region` [m].

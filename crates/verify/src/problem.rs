@@ -133,7 +133,7 @@ impl Problem {
 
     /// A traction [Pa] on a whole side.
     pub(crate) fn traction(self, side: BoxSide, x: f64, y: f64) -> Self {
-        self.load(Selection::Edge { side, body: None }, LoadKind::Traction(Vector::new(x, y)), Curve::default())
+        self.load(Selection::Edge { side, bodies: None }, LoadKind::Traction(Vector::new(x, y)), Curve::default())
     }
 
     /// Any load.

@@ -9,7 +9,8 @@ use std::path::PathBuf;
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BodyKeys {
-    /// Name, unique among the bodies. Required. A drawing of several separate outlines gives the bodies `name.1`, `name.2`, ...
+    /// Name, unique among the bodies. Required. A drawing of several separate outlines gives a body of several parts,
+    /// `name.1`, `name.2`, ...: its name means all of them, that of a part the part.
     pub name: String,
     /// Material: `pmma`, `glass`, `snow`, `jello` or the name of a `[[material]]`. Required.
     pub material: String,
@@ -21,7 +22,7 @@ pub struct BodyKeys {
     /// Rotation at the start, counter-clockwise, in rad/s.
     #[serde(default)]
     pub angular_velocity: f64,
-    /// Centre of the rotation [x, y] in m. Default: the body's centre of area.
+    /// Centre of the rotation [x, y] in m. Default: the body's centre of area, all parts together.
     pub center: Option<[f64; 2]>,
 }
 

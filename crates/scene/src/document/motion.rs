@@ -90,16 +90,21 @@ pub struct Keyframe {
     pub angle: f64,
 }
 
-/// Which material is meant. Without any key: everything. `body` alone: that body; `edge` may be combined with `body`.
+/// Which material is meant. Without any key: everything. `body` alone: that body; `edge` and a drawn line may be combined
+/// with `body`. The name of a body of several parts means all of them, `name.1` one part.
 #[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Select {
-    /// The layer of particles along one side of the bodies' bounding box: `left`, `right`, `bottom` or `top`.
+    /// The layer of particles along one side of the bodies' bounding box: `left`, `right`, `bottom` or `top`. Of a body of
+    /// several parts that is the box around all of them: the layer is of the parts that reach that side.
     pub edge: Option<BoxSide>,
     /// Name of a body.
     pub body: Option<String>,
     /// Material inside a shape (its edges included).
     pub region: Option<Shape>,
+    /// Element of the drawing, by id. An open line selects the layer of particles along the edge it is drawn on, not farther
+    /// than a particle spacing from it; a closed shape selects the material inside it.
+    pub svg: Option<String>,
     /// Material within `radius` of these points [[x, y], ...] in m.
     pub near: Option<Vec<[f64; 2]>>,
     /// Distance in m; needs `near`.
@@ -113,9 +118,9 @@ pub struct LoadKeys {
     /// Material the load acts on. Default: everything.
     #[serde(default)]
     pub select: Select,
-    /// Total force [x, y] per metre of thickness in N/m, shared among the selected material.
+    /// Total force [x, y] per metre of thickness in N/m, shared among all the selected material by its volume.
     pub force: Option<[f64; 2]>,
-    /// Force per area [x, y] in Pa on the selected edge; needs `select = { edge = ... }`.
+    /// Force per area [x, y] in Pa on the selected edge; needs `select = { edge = ... }` or an open line of the drawing.
     pub traction: Option<[f64; 2]>,
     /// Forces on single particles.
     pub per_point: Option<Vec<PointForce>>,

@@ -1,5 +1,6 @@
 //! From a scene file to a [`Scene`]: defaults, then the file, then overrides.
 
+mod along;
 mod drawing;
 mod error;
 mod loaded;

@@ -18,14 +18,14 @@ impl Scene {
             LoadKind::Force(f) => FORCE.check_pair(path.then("force"), "the force", [f.x, f.y]),
             LoadKind::Traction(t) => {
                 TRACTION.check_pair(path.then("traction"), "the traction", [t.x, t.y])?;
-                if matches!(load.selection, Selection::Edge { .. }) {
+                if matches!(load.selection, Selection::Edge { .. } | Selection::Outline(_)) {
                     return Ok(());
                 }
                 let message = "a traction acts on an edge, but none is selected";
                 Err(SceneFault::new(
                     path.then("traction"),
                     message,
-                    "add `select = { edge = \"...\" }` or give a `force`",
+                    "add `select = { edge = \"...\" }` or `select = { svg = \"...\" }` with an open line along it, or give a `force`",
                 ))
             }
             LoadKind::PerPoint(forces) => {
@@ -58,8 +58,14 @@ impl Scene {
             Err(SceneFault::new(path.then("body"), format!("body number {body} is selected"), remedy))
         };
         match selection {
-            Selection::All | Selection::Edge { body: None, .. } => Ok(()),
-            Selection::Body(body) | Selection::Edge { body: Some(body), .. } => body_exists(*body),
+            Selection::All | Selection::Edge { bodies: None, .. } => Ok(()),
+            Selection::Bodies(bodies) | Selection::Edge { bodies: Some(bodies), .. } => {
+                bodies.iter().try_for_each(|&body| body_exists(body))
+            }
+            Selection::Outline(stretches) => stretches.iter().try_for_each(|stretch| {
+                body_exists(stretch.body)?;
+                COORDINATE.check_points(&path, "a point of the selected edge", &[stretch.from, stretch.to])
+            }),
             Selection::Region(region) => validate_region(&path.then("region"), "the selected region", region),
             Selection::Near { points, radius } => {
                 ITEMS.check(&path.then("near"), "a selection", points.len())?;

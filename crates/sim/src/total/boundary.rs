@@ -4,7 +4,7 @@ use super::Total;
 use super::cut::Probe;
 use super::refresh::Near;
 use crate::SimulationError;
-use crate::particles::{selects, selects_piece};
+use crate::selector::Selector;
 use fissure_scene::{LoadKind, Point, Selection, Vector};
 
 /// A force at a place of the material.
@@ -91,26 +91,16 @@ impl Total {
         nearest
     }
 
-    /// A traction on a side of the box: on the parts of the rings that lie on that side, by the length between neighbouring places.
+    /// A traction on an edge, by the length between neighbouring places.
     fn traction_forces(&self, selection: &Selection, traction: Vector) -> Vec<PointForce> {
         let mut forces = Vec::new();
-        for (index, body) in self.scene.bodies.iter().enumerate() {
-            for ring in body.region.rings() {
-                for i in 0..ring.len() {
-                    let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
-                    if !selects_piece(&self.scene, selection, index, a, b) {
-                        continue;
-                    }
-                    // One place in the middle of each half cell, so that every node gets the load of its hat.
-                    let pieces = ((b - a).norm() / self.particles.spacing).round().max(1.0) as usize;
-                    for k in 0..pieces {
-                        let place = a + (b - a) * ((k as f64 + 0.5) / pieces as f64);
-                        forces.push(PointForce {
-                            probe: self.probe(place, place),
-                            force: traction * ((b - a).norm() / pieces as f64),
-                        });
-                    }
-                }
+        for [a, b] in Selector::new(&self.scene, selection).pieces(&self.scene) {
+            // One place in the middle of each half cell, so that every node gets the load of its hat.
+            let pieces = ((b - a).norm() / self.particles.spacing).round().max(1.0) as usize;
+            for k in 0..pieces {
+                let place = a + (b - a) * ((k as f64 + 0.5) / pieces as f64);
+                let force = traction * ((b - a).norm() / pieces as f64);
+                forces.push(PointForce { probe: self.probe(place, place), force });
             }
         }
         forces
@@ -164,10 +154,11 @@ impl Total {
     pub(super) fn constraints_of_supports(&self) -> Result<Vec<Constraint>, SimulationError> {
         let mut constraints = Vec::new();
         let bodies = self.body_of_fields();
-        for support in 0..self.scene.supports.len() {
+        for (support, of) in self.scene.supports.iter().enumerate() {
             let before = constraints.len();
+            let selector = Selector::new(&self.scene, &of.selection);
             for (field, place) in self.places_of_fields().enumerate() {
-                if self.holds(support, field, self.grid.place(place), &bodies) {
+                if self.holds(&selector, field, self.grid.place(place), &bodies) {
                     constraints.push(Constraint { field: field as u32, support: support as u32 });
                 }
             }
@@ -179,17 +170,13 @@ impl Total {
     }
 
     /// Whether a support holds a field whose node is at `place` at rest.
-    fn holds(&self, support: usize, field: usize, place: Point, bodies: &[u32]) -> bool {
+    fn holds(&self, selector: &Selector<'_>, field: usize, place: Point, bodies: &[u32]) -> bool {
         if self.state.mass[field] == 0.0 {
             return false;
         }
-        let selection = &self.scene.supports[support].selection;
-        let slack = match selection {
-            // Nodes on the side and, where the side is not on a grid line, those beyond it or nearer than half a cell.
-            Selection::Edge { .. } => 0.499 * self.grid.cell_size,
-            _ => 0.0,
-        };
-        selects(&self.scene, selection, place, bodies[field] as usize, slack)
+        let (body, h) = (bodies[field] as usize, self.grid.cell_size);
+        // Nodes on an edge and, where the edge is not on a grid line, those beyond it or nearer than half a cell.
+        selector.selects(place, body, 0.499 * h, h)
     }
 
     /// [`Total::constraints_of_supports`] after a change: fields elsewhere are held as before.
@@ -202,8 +189,9 @@ impl Total {
         let place = |field: usize| self.grid.position(self.state.fields.node(field));
         let mut constraints: Vec<Constraint> =
             self.constraints.iter().filter(|c| !near.contains(place(c.field as usize))).copied().collect();
-        for support in 0..self.scene.supports.len() {
-            let held = changed.iter().filter(|&&(field, place)| self.holds(support, field, place, &bodies));
+        for (support, of) in self.scene.supports.iter().enumerate() {
+            let selector = Selector::new(&self.scene, &of.selection);
+            let held = changed.iter().filter(|&&(field, place)| self.holds(&selector, field, place, &bodies));
             constraints.extend(held.map(|&(field, _)| Constraint { field: field as u32, support: support as u32 }));
         }
         constraints.sort_unstable_by_key(|c| (c.support, c.field));
@@ -323,16 +311,8 @@ impl Total {
     pub(super) fn set_initial_velocities(&mut self) {
         let mut momentum = [vec![0.0; self.state.mass.len()], vec![0.0; self.state.mass.len()]];
         let mut any = false;
-        for p in 0..self.particles.len() {
-            let body = self.particles.body[p] as usize;
-            let place = self.particles.rest[p];
-            let mut v = Vector::zeros();
-            for part in &self.scene.bodies[body].velocities {
-                if selects(&self.scene, &part.selection, place, body, 0.0) {
-                    let arm = place - part.center;
-                    v += part.velocity + Vector::new(-arm.y, arm.x) * part.angular_velocity;
-                }
-            }
+        for (p, motion) in self.particles.first_motions(&self.scene).into_iter().enumerate() {
+            let v = motion.velocity;
             if v != Vector::zeros() {
                 any = true;
                 let m = self.particles.mass[p];

@@ -3,7 +3,7 @@
 use super::{MaterialPoint, Updated};
 use crate::SimulationError;
 use crate::collider::PlacedObstacle;
-use crate::particles::{selects, selects_piece};
+use crate::selector::Selector;
 use fissure_scene::{LoadKind, Matrix, Point, Selection, Vector};
 
 impl Updated {
@@ -41,20 +41,12 @@ impl Updated {
     fn traction_forces(&self, selection: &Selection, traction: Vector) -> Vec<(u32, Vector)> {
         let layer = self.particles.select(&self.scene, selection);
         let mut forces = Vec::new();
-        for (index, body) in self.scene.bodies.iter().enumerate() {
-            for ring in body.region.rings() {
-                for i in 0..ring.len() {
-                    let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
-                    if !selects_piece(&self.scene, selection, index, a, b) {
-                        continue;
-                    }
-                    let pieces = ((b - a).norm() / self.particles.spacing).round().max(1.0) as usize;
-                    let share = traction * ((b - a).norm() / pieces as f64);
-                    for k in 0..pieces {
-                        let place = a + (b - a) * ((k as f64 + 0.5) / pieces as f64);
-                        forces.extend(self.nearest(&layer, place).map(|p| (p, share)));
-                    }
-                }
+        for [a, b] in Selector::new(&self.scene, selection).pieces(&self.scene) {
+            let pieces = ((b - a).norm() / self.particles.spacing).round().max(1.0) as usize;
+            let share = traction * ((b - a).norm() / pieces as f64);
+            for k in 0..pieces {
+                let place = a + (b - a) * ((k as f64 + 0.5) / pieces as f64);
+                forces.extend(self.nearest(&layer, place).map(|p| (p, share)));
             }
         }
         forces
@@ -75,17 +67,10 @@ impl Updated {
 
     /// Velocities at time zero.
     pub(super) fn set_initial_velocities(&mut self) {
-        for p in 0..self.particles.len() {
-            let body = self.particles.body[p] as usize;
-            let place = self.particles.rest[p];
-            for part in &self.scene.bodies[body].velocities {
-                if selects(&self.scene, &part.selection, place, body, 0.0) {
-                    let arm = place - part.center;
-                    self.state.points[p].velocity += part.velocity + Vector::new(-arm.y, arm.x) * part.angular_velocity;
-                    if let Some(c) = self.state.affine.get_mut(p) {
-                        *c += Matrix::new(0.0, -part.angular_velocity, part.angular_velocity, 0.0);
-                    }
-                }
+        for (p, motion) in self.particles.first_motions(&self.scene).into_iter().enumerate() {
+            self.state.points[p].velocity += motion.velocity;
+            if let Some(c) = self.state.affine.get_mut(p) {
+                *c += Matrix::new(0.0, -motion.angular_velocity, motion.angular_velocity, 0.0);
             }
         }
     }

@@ -180,7 +180,7 @@ fn a_wave_runs_at_the_dilatational_speed() {
         scene.solver.transfer = transfer;
         let push = 1e-4;
         scene.supports.push(Support {
-            selection: Selection::Edge { side: BoxSide::Left, body: None },
+            selection: Selection::Edge { side: BoxSide::Left, bodies: None },
             velocity: [Some(push), None],
             curve: always(),
         });
@@ -348,12 +348,12 @@ fn busy_scene() -> Scene {
     scene.solver.tip_division = TipDivision::PartlyCut;
     scene.gravity = Vector::new(0.0, -9.8);
     scene.loads.push(Load {
-        selection: Selection::Edge { side: BoxSide::Top, body: None },
+        selection: Selection::Edge { side: BoxSide::Top, bodies: None },
         kind: LoadKind::Traction(Vector::new(1.0, 20.0)),
         curve: always(),
     });
     scene.supports.push(Support {
-        selection: Selection::Edge { side: BoxSide::Bottom, body: None },
+        selection: Selection::Edge { side: BoxSide::Bottom, bodies: None },
         velocity: [Some(0.1), Some(0.0)],
         curve: always(),
     });

@@ -96,7 +96,7 @@ pub(crate) fn guide(points: &[[f64; 2]]) -> Guide {
 /// Adds a traction [Pa] on a side of the box.
 pub(crate) fn add_traction(scene: &mut Scene, side: BoxSide, traction: [f64; 2]) {
     scene.loads.push(Load {
-        selection: Selection::Edge { side, body: None },
+        selection: Selection::Edge { side, bodies: None },
         kind: LoadKind::Traction(Vector::from(traction)),
         curve: Curve::default(),
     });

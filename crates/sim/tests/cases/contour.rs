@@ -19,7 +19,7 @@ fn ratio(method: JMethod, area_term: bool, part: f64) -> f64 {
     let height = 2.03;
     add_crack(&mut scene, &[[0.0, height], [5.02, height]]);
     add_traction(&mut scene, BoxSide::Top, [0.0, TRACTION]);
-    hold(&mut scene, Selection::Edge { side: BoxSide::Bottom, body: None }, [None, Some(0.0)]);
+    hold(&mut scene, Selection::Edge { side: BoxSide::Bottom, bodies: None }, [None, Some(0.0)]);
     let elastic = Elastic::new(&scene.materials[0], scene.plane);
     let c = elastic.dilatational_wave_speed();
     let arrival = (4.0 - height) / c;

@@ -8,7 +8,7 @@ use fissure_sim::Simulation;
 use std::f64::consts::PI;
 
 fn edge(side: BoxSide) -> Selection {
-    Selection::Edge { side, body: None }
+    Selection::Edge { side, bodies: None }
 }
 
 /// A half-plane of which the surface moves along y: at `y` [m] at the time 0 with `speed` [m/s].

@@ -27,7 +27,7 @@ const LENGTH: f64 = 100.0;
 
 /// A bar `length` cells long, held on its left, pulled on its right with a factor over time.
 fn bar(length: f64, curve: Curve) -> Problem {
-    let edge = |side| Selection::Edge { side, body: None };
+    let edge = |side| Selection::Edge { side, bodies: None };
     let strip = rectangle((0.0, 0.0), (length, 4.0));
     Problem::new("bar-wave", strip, linear_material(), PlaneState::Strain, 1.0)
         .support(Selection::All, [None, Some(0.0)])

@@ -40,8 +40,8 @@ fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationErr
             let period = TAU / (reference * slow);
             let force = Vector::new(0.0, 1e-6 * LINEAR_YOUNG * depth / length);
             let release = Curve { points: vec![(0.0, 1.0), (0.02 * period, 0.0)] };
-            let right = Selection::Edge { side: BoxSide::Right, body: None };
-            let left = Selection::Edge { side: BoxSide::Left, body: None };
+            let right = Selection::Edge { side: BoxSide::Right, bodies: None };
+            let left = Selection::Edge { side: BoxSide::Left, bodies: None };
             let problem = Problem::new("cantilever", rectangle((0.0, 0.0), (length, depth)), material, plane, 1.0)
                 .support(left, [Some(0.0), Some(0.0)])
                 .load(right, LoadKind::Traction(force), release)

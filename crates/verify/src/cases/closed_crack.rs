@@ -76,7 +76,7 @@ fn problem(degrees: f64, cells: f64, faces: Faces) -> Problem {
     for (stress, curve) in stresses {
         for (side, x, y) in sides {
             let traction = LoadKind::Traction(stress * Vector::new(x, y));
-            problem = problem.load(Selection::Edge { side, body: None }, traction, curve.clone());
+            problem = problem.load(Selection::Edge { side, bodies: None }, traction, curve.clone());
         }
     }
     problem

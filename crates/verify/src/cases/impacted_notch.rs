@@ -46,7 +46,7 @@ fn plate(cell_size: f64, toughness: f64) -> (Problem, Point) {
         cell_size,
     )
     .crack(&[(0.0, tip.y), (tip.x, tip.y)], [false, true])
-    .support(Selection::Edge { side: BoxSide::Bottom, body: None }, [None, Some(0.0)]);
+    .support(Selection::Edge { side: BoxSide::Bottom, bodies: None }, [None, Some(0.0)]);
     problem.scene.supports.push(Support {
         selection: driven,
         velocity: [Some(16.5), None],

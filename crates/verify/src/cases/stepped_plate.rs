@@ -69,7 +69,7 @@ impl SteppedPlate {
         )
         .crack(&[(0.0, y), (x, y)], [false, true])
         .traction(BoxSide::Top, 0.0, TRACTION)
-        .support(Selection::Edge { side: BoxSide::Bottom, body: None }, [None, Some(0.0)])
+        .support(Selection::Edge { side: BoxSide::Bottom, bodies: None }, [None, Some(0.0)])
         .until(end * self.arrival(), 30)
     }
 }

@@ -26,19 +26,21 @@ impl<'d> Resolver<'d> {
             let path = KeyPath::item("body", i);
             let material = self.material_index(path.then("material"), &keys.material, &mut materials)?;
             let regions = self.regions(&path.then("shape"), &keys.shape, tolerance)?;
+            self.own_names(&path, i, regions.len())?;
+            let parts: Vec<usize> = (bodies.len()..bodies.len() + regions.len()).collect();
+            let mut velocities = Vec::new();
+            if keys.velocity != [0.0; 2] || keys.angular_velocity != 0.0 {
+                velocities.push(InitialVelocity {
+                    selection: Selection::Bodies(parts),
+                    velocity: Vector::from(keys.velocity),
+                    angular_velocity: keys.angular_velocity,
+                    center: keys.center.map_or_else(|| center_of_area(&regions), Point::from),
+                });
+            }
             let several = regions.len() > 1;
             for (k, region) in regions.into_iter().enumerate() {
-                let name = if several { format!("{}.{}", keys.name, k + 1) } else { keys.name.clone() };
-                let mut velocities = Vec::new();
-                if keys.velocity != [0.0; 2] || keys.angular_velocity != 0.0 {
-                    velocities.push(InitialVelocity {
-                        selection: Selection::Body(bodies.len()),
-                        velocity: Vector::from(keys.velocity),
-                        angular_velocity: keys.angular_velocity,
-                        center: keys.center.map_or_else(|| center_of_area(&region), Point::from),
-                    });
-                }
-                bodies.push(Body { name, region, material, inclusions: Vec::new(), velocities });
+                let name = if several { part_name(&keys.name, k) } else { keys.name.clone() };
+                bodies.push(Body { name, region, material, inclusions: Vec::new(), velocities: velocities.clone() });
                 self.origin.bodies.push(i);
             }
         }
@@ -46,6 +48,31 @@ impl<'d> Resolver<'d> {
             self.material_index(KeyPath::item("region", i).then("material"), &keys.material, &mut materials)?;
         }
         Ok((materials, bodies))
+    }
+
+    /// That no other `[[body]]` has the name of body number `index`, or of one of its `parts`.
+    fn own_names(&self, path: &KeyPath, index: usize, parts: usize) -> Resolved<()> {
+        let keys = &self.document.body;
+        let name = &keys[index].name;
+        let own: Vec<String> = if parts > 1 { (0..parts).map(|k| part_name(name, k)).collect() } else { Vec::new() };
+        for (other, body) in keys.iter().enumerate().filter(|(other, _)| *other != index) {
+            if other < index && body.name == *name {
+                let message = format!("two of them are called body `{name}`");
+                return Err(SceneFault::new(path.then("name"), message, "give each its own name"));
+            }
+            if own.contains(&body.name) {
+                let message = format!(
+                    "body `{name}` consists of {parts} parts, and the name `{}` of one of them is that of another body",
+                    body.name
+                );
+                return Err(SceneFault::new(
+                    KeyPath::item("body", other).then("name"),
+                    message,
+                    "rename one of the two",
+                ));
+            }
+        }
+        Ok(())
     }
 
     /// Index of the material called `name`, which is added to `materials` when it comes with Fissure.
@@ -84,13 +111,22 @@ impl<'d> Resolver<'d> {
         Ok(())
     }
 
-    /// The bodies called `name`: one, or all that were made of a drawing of several outlines; without a name all there are.
+    /// The bodies called `name`: one, or all parts of a drawing of several outlines; without a name all there are. A part
+    /// has a name of its own.
     pub(super) fn bodies(&self, path: KeyPath, name: Option<&str>, scene: &Scene) -> Resolved<Vec<usize>> {
         let Some(name) = name else { return Ok((0..scene.bodies.len()).collect()) };
-        let all = scene.bodies.iter().enumerate();
-        let made_of: Vec<usize> =
-            all.filter(|(b, _)| self.document.body[self.origin.bodies[*b]].name == name).map(|(b, _)| b).collect();
-        if made_of.is_empty() { self.body(path, name, scene).map(|body| vec![body]) } else { Ok(made_of) }
+        let drawn_as = |b: usize| self.document.body[self.origin.bodies[b]].name.as_str();
+        let made_of: Vec<usize> = (0..scene.bodies.len()).filter(|&b| drawn_as(b) == name).collect();
+        if !made_of.is_empty() {
+            return Ok(made_of);
+        }
+        let parts: Vec<&str> = scene.bodies.iter().map(|b| b.name.as_str()).collect();
+        if let Some(part) = parts.iter().position(|part| *part == name) {
+            return Ok(vec![part]);
+        }
+        let mut known: Vec<&str> = self.document.body.iter().map(|b| b.name.as_str()).collect();
+        known.extend(parts.iter().filter(|part| !self.document.body.iter().any(|b| b.name == **part)));
+        Err(SceneFault::new(path, format!("there is no body `{name}`"), nearest(name, &known)))
     }
 
     pub(super) fn unknown_material(&self, path: KeyPath, name: &str) -> SceneFault {
@@ -147,13 +183,9 @@ impl<'d> Resolver<'d> {
             name: keys.name.clone(),
         })
     }
+}
 
-    /// Index of the one body called `name`.
-    pub(super) fn body(&self, path: KeyPath, name: &str, scene: &Scene) -> Resolved<usize> {
-        let names: Vec<&str> = scene.bodies.iter().map(|b| b.name.as_str()).collect();
-        names
-            .iter()
-            .position(|n| *n == name)
-            .ok_or_else(|| SceneFault::new(path, format!("there is no body `{name}`"), nearest(name, &names)))
-    }
+/// Name of a part of a body, counted from 0.
+fn part_name(body: &str, part: usize) -> String {
+    format!("{body}.{}", part + 1)
 }

@@ -5,6 +5,7 @@ mod cracks;
 mod flaws;
 mod motion;
 mod origin;
+mod selection;
 mod settings;
 mod shapes;
 mod short_cracks;

@@ -1,6 +1,6 @@
 //! What moves and holds the bodies: colliders, loads, supports, velocities.
 
-use super::shapes::{center_of_area, points, rectangle};
+use super::shapes::{center_of_area, rectangle};
 use super::{Resolved, Resolver};
 use crate::document::*;
 use crate::fault::{KeyPath, SceneFault};
@@ -23,7 +23,7 @@ impl<'d> Resolver<'d> {
             return Err(SceneFault::new(path.then("name"), message, "give each its own name"));
         }
         let from_region = |region: Region| {
-            let center = center_of_area(&region);
+            let center = center_of_area(std::slice::from_ref(&region));
             let ring = region.exterior.iter().map(|p| Point::from(p - center)).collect();
             (ColliderShape::Polygon { ring }, center)
         };
@@ -67,49 +67,6 @@ impl<'d> Resolver<'d> {
             })
             .collect();
         Ok(Collider { name, shape, keyframes, contact: keys.contact, friction: keys.friction })
-    }
-
-    pub(super) fn selection(
-        &self,
-        path: &KeyPath,
-        select: &Select,
-        scene: &Scene,
-        tolerance: f64,
-    ) -> Resolved<Selection> {
-        let path = path.then("select");
-        let body = match &select.body {
-            Some(name) => Some(self.body(path.then("body"), name, scene)?),
-            None => None,
-        };
-        let combined = |keys: &str| {
-            SceneFault::new(path.clone(), format!("a selection cannot combine {keys}"), "select by one of them")
-        };
-        match (select.edge, &select.region, &select.near) {
-            (Some(_), Some(_), _) => Err(combined("`edge` and `region`")),
-            (Some(_), _, Some(_)) => Err(combined("`edge` and `near`")),
-            (_, Some(_), Some(_)) => Err(combined("`region` and `near`")),
-            (None, Some(_), _) | (None, _, Some(_)) if body.is_some() => {
-                Err(combined("`body` with `region` or `near`"))
-            }
-            _ if select.radius.is_some() != select.near.is_some() => {
-                let message = "`near` and `radius` belong together";
-                Err(SceneFault::new(path, message, "write `select = { near = [[x, y]], radius = ... }`"))
-            }
-            (Some(side), None, None) => Ok(Selection::Edge { side, body }),
-            (None, Some(shape), None) => {
-                let path = path.then("region");
-                let mut regions = self.regions(&path, shape, tolerance)?;
-                if regions.len() != 1 {
-                    let message = format!("the shape has {} separate outlines", regions.len());
-                    return Err(SceneFault::new(path, message, "select one outline at a time"));
-                }
-                Ok(Selection::Region(regions.swap_remove(0)))
-            }
-            (None, None, Some(near)) => {
-                Ok(Selection::Near { points: points(near), radius: select.radius.unwrap_or_default() })
-            }
-            (None, None, None) => Ok(body.map_or(Selection::All, Selection::Body)),
-        }
     }
 
     pub(super) fn loads(&self, scene: &Scene, tolerance: f64) -> Resolved<Vec<Load>> {
@@ -169,11 +126,12 @@ impl<'d> Resolver<'d> {
             ANGULAR_VELOCITY.check(path.then("angular_velocity"), "the rotation", keys.angular_velocity)?;
             COORDINATE.check_pair(path.then("center"), "the centre of rotation", keys.center)?;
             let selection = self.selection(&path, &keys.select, scene, tolerance)?;
-            let only = match &selection {
-                Selection::Body(body) | Selection::Edge { body: Some(body), .. } => Some(*body),
-                _ => None,
+            let of = match &selection {
+                Selection::Bodies(bodies) | Selection::Edge { bodies: Some(bodies), .. } => bodies.clone(),
+                _ => (0..scene.bodies.len()).collect(),
             };
-            for (_, body) in scene.bodies.iter_mut().enumerate().filter(|(b, _)| only.is_none_or(|o| o == *b)) {
+            for body in of {
+                let body = &mut scene.bodies[body];
                 body.velocities.push(InitialVelocity {
                     selection: selection.clone(),
                     velocity: Vector::from(keys.velocity),

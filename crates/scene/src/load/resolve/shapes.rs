@@ -139,16 +139,16 @@ fn circle_in_range(path: &KeyPath, circle: &CircleKeys) -> Resolved<()> {
     LENGTH.check(path.then("radius"), "the radius of the circle", circle.radius)
 }
 
-/// Centre of area of a region.
-pub(super) fn center_of_area(region: &Region) -> Point {
-    let Some(&origin) = region.exterior.first() else { return Point::origin() };
+/// Common centre of area of regions.
+pub(super) fn center_of_area(regions: &[Region]) -> Point {
+    let Some(&origin) = regions.iter().flat_map(|r| &r.exterior).next() else { return Point::origin() };
     let mut moment = Vector::zeros();
-    for ring in region.rings() {
+    for ring in regions.iter().flat_map(Region::rings) {
         for i in 0..ring.len() {
             let (p, q) = (ring[i] - origin, ring[(i + 1) % ring.len()] - origin);
             moment += (p + q) * ((p.x * q.y - q.x * p.y) / 6.0);
         }
     }
-    let area: f64 = region.rings().map(signed_area).sum();
+    let area: f64 = regions.iter().flat_map(Region::rings).map(signed_area).sum();
     origin + moment / area
 }

@@ -1,0 +1,131 @@
+//! Which places of the bodies a selection means.
+
+use crate::particles::distance_to_rings;
+use fissure_scene::{BoxSide, OutlineStretch, Point, Region, Scene, Selection, Vector, bounds};
+
+/// A selection in a scene, ready to be asked for many places.
+#[derive(Debug, Clone)]
+pub(crate) enum Selector<'s> {
+    /// Everything.
+    All,
+    /// Bodies, whole.
+    Bodies(&'s [usize]),
+    /// Places in a region, its edges to within the slack [m] included.
+    Region { region: &'s Region, slack: f64 },
+    /// Places near to points.
+    Near { points: &'s [Point], radius: f64 },
+    /// An edge: one side of the box around bodies.
+    Side(Side<'s>),
+    /// An edge: stretches of outlines.
+    Outline(&'s [OutlineStretch]),
+}
+
+/// One side of the box around `bodies` (or around all).
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Side<'s> {
+    bodies: Option<&'s [usize]>,
+    side: BoxSide,
+    /// Its x or y [m].
+    at: f64,
+}
+
+impl<'s> Selector<'s> {
+    /// The selector of a selection in `scene`.
+    pub(crate) fn new(scene: &Scene, selection: &'s Selection) -> Self {
+        match selection {
+            Selection::All => Self::All,
+            Selection::Bodies(bodies) => Self::Bodies(bodies),
+            Selection::Region(region) => {
+                let (low, high) = region.bounds();
+                Self::Region { region, slack: 1e-9 * (high - low).norm() }
+            }
+            Selection::Near { points, radius } => Self::Near { points, radius: *radius },
+            Selection::Edge { side, bodies } => Self::Side(Side::of(scene, *side, bodies.as_deref())),
+            Selection::Outline(stretches) => Self::Outline(stretches),
+        }
+    }
+
+    /// Whether a place of a body at rest is meant. Of an edge: whether it is less than `inside` deep in the material, or at most
+    /// `outside` beyond the edge [m]; a side of a box goes on outside without end.
+    pub(crate) fn selects(&self, place: Point, body: usize, inside: f64, outside: f64) -> bool {
+        match self {
+            Self::All => true,
+            Self::Bodies(bodies) => bodies.contains(&body),
+            Self::Region { region, slack } => region.contains(place) || distance_to_rings(region, place) <= *slack,
+            Self::Near { points, radius } => points.iter().any(|q| (place - q).norm() <= *radius),
+            Self::Side(side) => {
+                let depth = side.depth(place);
+                side.is_of(body) && (depth < inside || depth <= 0.0)
+            }
+            Self::Outline(stretches) => along(stretches, place, body, inside, outside),
+        }
+    }
+
+    /// The pieces of the outlines that make up a selected edge, the material to their left; of other selections none.
+    pub(crate) fn pieces(&self, scene: &Scene) -> Vec<[Point; 2]> {
+        let side = match self {
+            Self::Side(side) => side,
+            Self::Outline(stretches) => return stretches.iter().map(|s| [s.from, s.to]).collect(),
+            _ => return Vec::new(),
+        };
+        let slack = 1e-6 * scene.cell_size;
+        let is_on = |p: Point| side.depth(p).abs() <= slack;
+        let of = scene.bodies.iter().enumerate().filter(|(index, _)| side.is_of(*index));
+        let rings = of.flat_map(|(_, body)| body.region.rings());
+        let edges = rings.flat_map(|ring| (0..ring.len()).map(move |i| [ring[i], ring[(i + 1) % ring.len()]]));
+        edges.filter(|[a, b]| is_on(*a) && is_on(*b)).collect()
+    }
+}
+
+impl<'s> Side<'s> {
+    fn of(scene: &Scene, side: BoxSide, bodies: Option<&'s [usize]>) -> Self {
+        let (mut low, mut high) = bounds(&[]);
+        for (index, body) in scene.bodies.iter().enumerate() {
+            if bodies.is_none_or(|of| of.contains(&index)) {
+                let (l, h) = body.region.bounds();
+                (low, high) = (low.inf(&l), high.sup(&h));
+            }
+        }
+        let at = match side {
+            BoxSide::Left => low.x,
+            BoxSide::Right => high.x,
+            BoxSide::Bottom => low.y,
+            BoxSide::Top => high.y,
+        };
+        Self { bodies, side, at }
+    }
+
+    fn is_of(&self, body: usize) -> bool {
+        self.bodies.is_none_or(|of| of.contains(&body))
+    }
+
+    /// Distance from the side into the box [m], negative outside.
+    fn depth(&self, point: Point) -> f64 {
+        match self.side {
+            BoxSide::Left => point.x - self.at,
+            BoxSide::Right => self.at - point.x,
+            BoxSide::Bottom => point.y - self.at,
+            BoxSide::Top => self.at - point.y,
+        }
+    }
+}
+
+/// Whether a place lies beside one of the stretches, or around the corner of two that follow on each other.
+fn along(stretches: &[OutlineStretch], place: Point, body: usize, inside: f64, outside: f64) -> bool {
+    (0..stretches.len()).any(|i| {
+        let stretch = &stretches[i];
+        if stretch.body != body {
+            return false;
+        }
+        let (way, arm) = (stretch.to - stretch.from, place - stretch.from);
+        let length = way.norm();
+        let direction = way / length;
+        let (depth, along) = (Vector::new(-direction.y, direction.x).dot(&arm), direction.dot(&arm));
+        let reaches = |distance: f64| if depth > 0.0 { distance < inside } else { distance <= outside };
+        if (-1e-9 * length..=(1.0 + 1e-9) * length).contains(&along) {
+            return reaches(depth.abs());
+        }
+        let next = &stretches[(i + 1) % stretches.len()];
+        along > length && next.from == stretch.to && reaches((place - stretch.to).norm())
+    })
+}
