@@ -208,7 +208,6 @@ fn every_mistake_is_told_with_line_value_and_remedy() {
         (plate("[[crack]]\nline = [[20, 0], [30, 0]]\n"), "", Scene, Some(6), &["`crack-1`", "(20, 0)", "outside"]),
         (plate("[[crack]]\nline = [[1, 1], [1, 1]]\n"), "", Scene, Some(6), &["zero length", "(1, 1)"]),
         (plate("[[crack]]\nline = [[0, 0], [2, 2], [2, 0], [0, 2]]\n"), "", Scene, Some(6), &["crosses itself", "(1, 1)"]),
-        (plate("[[crack]]\nline = [[0, 0], [12, 0], [12, 3], [0, 3]]\n"), "", Scene, Some(6), &["leaves", "`plate`", "(10, 0)"]),
         (plate("[[crack]]\nline = [[0, 0], [nan, 2]]\n"), "", Scene, Some(6), &["NaN"]),
         (plate("[[crack]]\nline = [[-10, 0], [-5, 0]]\ntips = 'start'\n"), "", Scene, Some(7), &["start", "outline", "(-10, 0)"]),
         (plate("[[crack]]\nline = [[-5, 0], [5, 0]]\n[[crack]]\nline = [[0, -5], [0, 5]]\n"), "", Scene, Some(8), &["crack-1", "crack-2", "(0, 0)"]),
@@ -305,4 +304,63 @@ fn the_schema_describes_every_key() {
             assert!(property["description"].is_string(), "{name}.{key} has no description");
         }
     }
+}
+
+const HOLED: &str = "[[body]]\nname = 'plate'\nmaterial = 'pmma'\nshape = { polygon = { exterior = [[-10, -10], [10, -10], [10, 10], [-10, 10]], \
+                     holes = [[[-2, -2], [2, -2], [2, 2], [-2, 2]]] } }\n";
+
+/// Truth: the construction. A line across a hole gives a crack on both sides of it, with mouths in the corners made for them; keys of
+/// tips and guides mean the ends of the line.
+#[test]
+fn a_crack_across_a_hole_is_its_pieces() {
+    let crack = |line: &str, rest: &str| {
+        let guide = "[[guide]]\nname = 'path'\nline = [[6, 1], [8, 3]]\n";
+        scene_with(&format!("{HOLED}[[crack]]\nname = 'c'\nline = {line}\n{rest}\n{guide}"), None, &[])
+    };
+    let scene = crack("[[-11, 1], [6, 1]]", "guide = 'path'").unwrap();
+    let found: Vec<_> = scene.cracks.iter().map(|c| (c.name.as_str(), c.start_live, c.end_live)).collect();
+    assert_eq!(found, [("c.1", false, false), ("c.2", false, true)]);
+    let points = |list: &[(f64, f64)]| list.iter().map(|&(x, y)| Point::new(x, y)).collect::<Vec<_>>();
+    assert_eq!(scene.cracks[0].points, points(&[(-10.0, 1.0), (-2.0, 1.0)]));
+    assert_eq!(scene.cracks[1].points, points(&[(2.0, 1.0), (6.0, 1.0)]));
+    let region = &scene.bodies[0].region;
+    for mouth in [scene.cracks[0].points[0], scene.cracks[0].points[1], scene.cracks[1].points[0]] {
+        assert!(region.rings().any(|ring| ring.contains(&mouth)));
+    }
+    assert_eq!(scene.cracks[1].end_guide.as_ref().unwrap().points.len(), 2);
+    // Both ends live: which of them `guide` means has to be said.
+    let told = crack("[[-6, 1], [6, 1]]", "guide = 'path'").unwrap_err().to_string();
+    assert!(told.contains("exactly one live tip"), "{told}");
+    let both = crack("[[-6, 1], [6, 1]]", "guide_end = 'path'").unwrap();
+    assert!(both.cracks[0].start_live && both.cracks[1].end_guide.is_some());
+    // The start is cut off at the outline, so it is no tip.
+    assert!(crack("[[-11, 1], [6, 1]]", "tips = 'both'").unwrap_err().to_string().contains("outline"));
+    assert_eq!(crack("[[-11, 1], [6, 1]]", "tips = 'none'").unwrap().cracks.iter().filter(|c| c.end_live).count(), 0);
+    // Out of the outline and in again.
+    let again = crack("[[0, 4], [12, 4], [12, 6], [0, 6]]", "").unwrap();
+    assert_eq!(
+        again.cracks.iter().map(|c| (c.start_live, c.end_live)).collect::<Vec<_>>(),
+        [(true, false), (false, true)]
+    );
+    // Along the edge of the hole: two pieces that open into its corners. Tangent to a corner: apart from each other.
+    assert_eq!(crack("[[-6, 2], [6, 2]]", "").unwrap().cracks[1].points[0], Point::new(2.0, 2.0));
+    let tangent = crack("[[-2, 6], [6, -2]]", "").unwrap();
+    assert_eq!(tangent.cracks.len(), 2);
+    assert_ne!(tangent.cracks[0].points.last(), tangent.cracks[1].points.first());
+    // A name that a piece would share with another crack is refused.
+    let other = "[[crack]]\nname = 'c.2'\nline = [[-6, -5], [6, -5]]";
+    assert!(crack("[[-11, 1], [6, 1]]", other).unwrap_err().to_string().contains("`c.2`"));
+}
+
+/// Truth: the construction. Without a name the line is a crack in every body it runs through, in the order of the line.
+#[test]
+fn a_crack_runs_through_several_bodies() {
+    let right =
+        "[[body]]\nname = 'right'\nmaterial = 'glass'\nshape = { rectangle = { min = [10, -10], max = [30, 10] } }\n";
+    let load =
+        |body: &str| scene_with(&format!("{PLATE}{right}[[crack]]\n{body}line = [[20, 5], [0, 5]]\n"), None, &[]);
+    let cracks: Vec<_> = load("").unwrap().cracks.iter().map(|c| (c.body, c.start_live, c.end_live)).collect();
+    assert_eq!(cracks, [(1, true, false), (0, false, true)]);
+    let only = load("body = 'plate'\n").unwrap();
+    assert_eq!((only.cracks.len(), only.cracks[0].body, only.cracks[0].name.as_str()), (1, 0, "crack-1"));
 }

@@ -10,17 +10,19 @@ use serde::{Deserialize, Serialize};
 pub struct CrackKeys {
     /// Name, unique among the cracks. Default: `crack-1`, `crack-2`, ...
     pub name: Option<String>,
-    /// Body the crack runs in. Default: the one body it lies in.
+    /// Body the crack runs in. Default: all it runs through.
     pub body: Option<String>,
-    /// Its line, open. Ends that stick out of the body are cut off at the outline; an end on the line of another crack opens into that one. Required.
+    /// Its line, open. Ends that stick out of the body are cut off at the outline; an end on the line of another crack opens into that one.
+    /// A line across holes, gaps or several bodies gives a crack for each piece in the material, `name.1`, `name.2`, ... from its first point
+    /// on, open where it meets an outline. Required.
     pub line: Line,
     /// Which ends may grow. Default: every end that lies inside the body and on no other crack.
     pub tips: Option<Tips>,
     /// Name of the guide that the only live tip follows.
     pub guide: Option<String>,
-    /// Name of the guide that the tip at the first point follows.
+    /// Name of the guide that the tip at the first point of the line follows.
     pub guide_start: Option<String>,
-    /// Name of the guide that the tip at the last point follows.
+    /// Name of the guide that the tip at the last point of the line follows.
     pub guide_end: Option<String>,
 }
 

@@ -11,6 +11,7 @@ mod resolve;
 mod scatter;
 mod seating;
 mod source;
+mod split;
 mod template;
 
 pub use error::{LoadError, LoadErrorKind};

@@ -1,13 +1,17 @@
 //! Seats cracks in their bodies, and guides on crack tips.
 
+use super::split::{Piece, pieces_inside};
 use crate::fault::{short, show};
-use crate::geometry::{Point, Region, nearest_on_segment};
+use crate::geometry::{Point, Region, Vector, nearest_on_segment};
 use crate::outline::{RingPlace, insert_corner, nearest_on_rings};
 
 /// What is wrong, and the remedy.
 pub(crate) type Complaint = (String, String);
 
-/// A crack with its ends where they belong.
+/// What comes this near to a ring, in tolerances, touches it: more than rounding, less than anybody draws.
+const WELD: f64 = 1e-3;
+
+/// A crack, or a piece of one, with its ends where they belong.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Seated {
     pub(crate) points: Vec<Point>,
@@ -15,21 +19,65 @@ pub(crate) struct Seated {
     pub(crate) mouths: [bool; 2],
     /// Whether the first and the last point lie on another crack.
     pub(crate) junctions: [bool; 2],
+    /// Length of the drawn line before it [m].
+    pub(crate) from: f64,
 }
 
-/// Cuts off what sticks out of the body at the ends, moves ends within `tolerance` of a ring onto it, and makes each
-/// such mouth a corner of its ring, so that both are the same point to the bit.
-pub(crate) fn seat_crack(points: &[Point], region: &mut Region, tolerance: f64) -> Result<Seated, Complaint> {
-    let mut points = points.to_vec();
-    let mut mouths = [false; 2];
-    for mouth in &mut mouths {
-        if let Some(place) = seat_start(&mut points, region, tolerance)? {
-            insert_corner(region, &place);
-            *mouth = true;
+/// The pieces of a drawn crack in the material of a body, in order: one, or several where it runs across holes or out and in again.
+///
+/// Ends of the line within `tolerance` [m] of a ring are moved onto it, and each mouth becomes a corner of its ring, so that both are
+/// the same point to the bit. Pieces not longer than the tolerance are left out.
+pub(crate) fn seat_crack(line: &[Point], region: &mut Region, tolerance: f64) -> Vec<Seated> {
+    let mut line = line.to_vec();
+    for _ in 0..2 {
+        let near = line.first().and_then(|&start| nearest_on_rings(region, start));
+        if let Some(place) = near.filter(|place| place.distance <= tolerance) {
+            line[0] = at_corner(region, place, tolerance).point;
         }
-        points.reverse();
+        line.reverse();
     }
-    Ok(Seated { points, mouths, junctions: [false; 2] })
+    let mut pieces: Vec<Seated> = Vec::new();
+    for Piece { mut points, mouths, from } in pieces_inside(&line, region, WELD * tolerance, tolerance) {
+        for (is_mouth, at) in mouths.into_iter().zip([0, points.len() - 1]) {
+            if is_mouth && let Some(place) = nearest_on_rings(region, points[at]) {
+                let place = at_corner(region, RingPlace { point: points[at], ..place }, tolerance);
+                insert_corner(region, &place);
+                points[at] = place.point;
+            }
+        }
+        if let Some(before) = pieces.last_mut().filter(|before| before.points.last() == points.first()) {
+            part_mouths(region, &mut before.points, &mut points, tolerance);
+        }
+        pieces.push(Seated { points, mouths, junctions: [false; 2], from });
+    }
+    pieces
+}
+
+/// Parts two pieces of a line that only touches a ring, in the corner where the one ends and the next begins: one of them gets a mouth of
+/// its own, a little along the edge beside it.
+fn part_mouths(region: &mut Region, before: &mut [Point], after: &mut [Point], tolerance: f64) {
+    let corner = after[0];
+    let found = region.rings().enumerate().find_map(|(r, ring)| Some((r, ring.iter().position(|&p| p == corner)?)));
+    let Some((ring, at)) = found else { return };
+    let points = if ring == 0 { &mut region.exterior } else { &mut region.holes[ring - 1] };
+    let count = points.len();
+    let (next, previous) = (points[(at + 1) % count] - corner, points[(at + count - 1) % count] - corner);
+    let turn = |from: Vector, to: Vector| {
+        (from.x * to.y - from.y * to.x).atan2(from.dot(&to)).rem_euclid(std::f64::consts::TAU)
+    };
+    let (arm_before, arm_after) = (before[before.len() - 2] - corner, after[1] - corner);
+    // The material lies counter-clockwise of the edge after the corner, as far as the one before it: each piece is beside one of them.
+    let before_is_first = turn(next, arm_before) < turn(next, arm_after);
+    let (first, second) = if before_is_first { (arm_before, arm_after) } else { (arm_after, arm_before) };
+    // The smaller angle is below half a turn, so that nothing is in the way.
+    let slides_on = turn(next, first) <= turn(second, previous);
+    let edge = if slides_on { next } else { previous };
+    let mouth = corner + edge * (tolerance / edge.norm()).min(0.25);
+    points.insert(if slides_on { at + 1 } else { at }, mouth);
+    match before.last_mut() {
+        Some(last) if before_is_first == slides_on => *last = mouth,
+        _ => after[0] = mouth,
+    }
 }
 
 /// Moves ends within `tolerance` of another crack of the same body onto it, and makes each such place a vertex of that crack, so that both are the same
@@ -65,61 +113,13 @@ pub(crate) fn seat_on_cracks(cracks: &mut [Seated], bodies: &[usize], tolerance:
     }
 }
 
-/// Seats the first point; returns the mouth if it lies on a ring.
-fn seat_start(points: &mut Vec<Point>, region: &Region, tolerance: f64) -> Result<Option<RingPlace>, Complaint> {
-    let Some(&start) = points.first() else { return Ok(None) };
-    let Some(nearest) = nearest_on_rings(region, start) else { return Ok(None) };
-    if nearest.distance <= tolerance {
-        let place = at_corner(region, nearest, tolerance);
-        points[0] = place.point;
-        return Ok(Some(place));
-    }
-    if region.contains(start) {
-        return Ok(None);
-    }
-    let (piece, place) = first_entry(points, region).ok_or_else(|| {
-        (
-            format!("it lies outside, {} m from the outline at {} m", short(nearest.distance), show(start)),
-            "move it into the body".to_owned(),
-        )
-    })?;
-    let place = at_corner(region, place, tolerance);
-    points.drain(..=piece);
-    points.insert(0, place.point);
-    // The rest of the piece that was cut may be shorter than can be told apart.
-    while points.len() > 2 && (points[1] - points[0]).norm() <= tolerance * 1e-3 {
-        points.remove(1);
-    }
-    Ok(Some(place))
-}
-
 /// The corner of the ring near `place`, if there is one.
 fn at_corner(region: &Region, place: RingPlace, tolerance: f64) -> RingPlace {
     let Some(ring) = region.rings().nth(place.ring) else { return place };
     let corner = [place.edge, (place.edge + 1) % ring.len()]
         .into_iter()
-        .find(|&k| (ring[k] - place.point).norm() <= tolerance * 1e-3);
+        .find(|&k| (ring[k] - place.point).norm() <= WELD * tolerance);
     corner.map_or(place, |k| RingPlace { edge: k, point: ring[k], ..place })
-}
-
-/// Where a polyline that starts outside first meets a ring: the piece, and the place.
-fn first_entry(points: &[Point], region: &Region) -> Option<(usize, RingPlace)> {
-    points.windows(2).enumerate().find_map(|(piece, w)| {
-        let mut first: Option<(f64, RingPlace)> = None;
-        for (ring, corners) in region.rings().enumerate() {
-            for edge in 0..corners.len() {
-                let (a, b) = (corners[edge], corners[(edge + 1) % corners.len()]);
-                let (d, g, u) = (w[1] - w[0], b - a, a - w[0]);
-                let determinant = d.x * g.y - d.y * g.x;
-                let (t, s) = ((u.x * g.y - u.y * g.x) / determinant, (u.x * d.y - u.y * d.x) / determinant);
-                let meets = (0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&s);
-                if meets && first.is_none_or(|(nearest, _)| t < nearest) {
-                    first = Some((t, RingPlace { ring, edge, point: a + g * s, distance: 0.0 }));
-                }
-            }
-        }
-        first.map(|(_, place)| (piece, place))
-    })
 }
 
 /// The part of a guide ahead of a crack tip, beginning exactly at the tip.
@@ -185,6 +185,7 @@ fn nearest_on_polyline(line: &[Point], point: Point) -> (usize, Point) {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use crate::load::split::tests as split;
     use proptest::prelude::*;
 
     fn points(list: &[(f64, f64)]) -> Vec<Point> {
@@ -222,7 +223,7 @@ mod tests {
     #[test]
     fn the_bar_of_a_t_ends_on_its_trunk() {
         for short in [0.01, 0.0, -0.01] {
-            let seated = |list: &[(f64, f64)]| seat_crack(&points(list), &mut square(), 1e-3).unwrap();
+            let seated = |list: &[(f64, f64)]| seat_crack(&points(list), &mut square(), 1e-3).swap_remove(0);
             let mut cracks = [seated(&[(-0.5, short), (-0.5, 0.7)]), seated(&[(-0.8, 0.0), (0.8, 0.0)])];
             seat_on_cracks(&mut cracks, &[0, 0], 0.02);
             assert_eq!((cracks[0].junctions, cracks[1].junctions), ([true, false], [false, false]));
@@ -242,12 +243,38 @@ mod tests {
         #[test]
         fn mouths_become_corners(x in 1.5_f64..3.0, y in -0.9_f64..0.9, tip in -0.5_f64..0.5) {
             let mut region = square();
-            let seated = seat_crack(&points(&[(x, y), (0.0, tip)]), &mut region, 1e-3).unwrap();
+            let seated = seat_crack(&points(&[(x, y), (0.0, tip)]), &mut region, 1e-3).swap_remove(0);
             prop_assert_eq!(seated.mouths, [true, false]);
             prop_assert!(region.exterior.contains(&seated.points[0]));
             prop_assert!((region.area() - 4.0).abs() < 1e-12);
             prop_assert_eq!(seated.points[1], Point::new(0.0, tip));
             prop_assert!(crate::validate::leaves(&region, &seated.points).is_none());
+        }
+
+        /// Truth: what a crack must be, as the validation has it. However a line runs over holes, along edges and through corners,
+        /// at any turn, each piece is inside with its mouths on corners of the rings, apart from the others, and the region keeps its area.
+        #[test]
+        fn pieces_are_sound_cracks(line in prop::collection::vec(split::place(), 2..4), angle in prop_oneof![Just(0.0), -3.0_f64..3.0],
+                                   mirrored in any::<bool>()) {
+            let mut region = split::region(angle, mirrored);
+            let area = region.area();
+            let line = split::placed(&line, angle, mirrored);
+            prop_assume!(line.windows(2).all(|w| (w[1] - w[0]).norm() > 0.1));
+            prop_assume!(crate::outline::find_crossing(&[&line], false).is_none());
+            let pieces = seat_crack(&line, &mut region, split::SHORTEST);
+            prop_assert!((region.area() - area).abs() < 1e-9);
+            for (k, piece) in pieces.iter().enumerate() {
+                for (end, point) in [piece.points[0], piece.points[piece.points.len() - 1]].iter().enumerate() {
+                    prop_assert_eq!(piece.mouths[end], region.rings().any(|ring| ring.contains(point)));
+                }
+                prop_assert!(crate::validate::leaves(&region, &piece.points).is_none(), "{:?} {:?}", piece, line);
+                for other in &pieces[..k] {
+                    let meets = other.points.windows(2).any(|v| piece.points.windows(2).any(|w| {
+                        crate::geometry::segments_touch(v[0], v[1], w[0], w[1])
+                    }));
+                    prop_assert!(!meets, "{:?} {:?}", other, piece);
+                }
+            }
         }
     }
 }

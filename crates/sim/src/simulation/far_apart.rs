@@ -16,7 +16,7 @@ fn plate(formulation: Formulation) -> Scene {
     add_crack(&mut scene, &[[0.0, 2.03], [2.1, 2.33]]);
     set_motion(&mut scene, Selection::All, [3.0, 1.0], 2.0, [2.0, 2.0]);
     scene.loads.push(Load {
-        selection: Selection::Edge { side: BoxSide::Top, body: Some(0) },
+        selection: Selection::Edge { side: BoxSide::Top, bodies: Some(vec![0]) },
         kind: LoadKind::Traction(Vector::new(0.0, 5.0)),
         curve: crate::test_scenes::always(),
     });

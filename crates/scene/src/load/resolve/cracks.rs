@@ -16,91 +16,76 @@ const MOUTH_TOLERANCE: f64 = 2.0 * super::FLATTENING;
 const GUIDE_TOLERANCE: f64 = 0.5;
 
 impl<'d> Resolver<'d> {
-    pub(super) fn cracks(&self, scene: &mut Scene, tolerance: f64) -> Resolved<()> {
+    pub(super) fn cracks(&mut self, scene: &mut Scene, tolerance: f64) -> Resolved<()> {
+        let document = self.document;
         let reach = MOUTH_TOLERANCE * scene.particle_spacing;
-        let (mut lines, mut bodies, mut all_seated) = (Vec::new(), Vec::new(), Vec::new());
-        for (i, keys) in self.document.crack.iter().enumerate() {
+        let (mut lines, mut bodies, mut seated) = (Vec::new(), Vec::new(), Vec::new());
+        for (i, keys) in document.crack.iter().enumerate() {
             let path = KeyPath::item("crack", i);
-            let name = name_of(i, keys);
-            let line_path = path.then("line");
-            let line = self.line(&line_path, &keys.line, tolerance)?;
-            let body = self.body_of_crack(&path, keys, &name, &line, scene)?;
-            let body_name = scene.bodies[body].name.clone();
-            let seated = seat_crack(&line, &mut scene.bodies[body].region, reach).map_err(|(message, remedy)| {
-                let message = format!("crack `{name}` is not inside body `{body_name}`: {message}");
-                SceneFault::new(line_path.clone(), message, remedy)
-            })?;
+            let line = self.line(&path.then("line"), &keys.line, tolerance)?;
+            for (body, piece) in self.pieces(&path, keys, &name_of(i, keys), &line, scene, reach)? {
+                self.origin.cracks.push(i);
+                bodies.push(body);
+                seated.push(piece);
+            }
             lines.push(line);
-            bodies.push(body);
-            all_seated.push(seated);
         }
-        seat_on_cracks(&mut all_seated, &bodies, reach);
-        for (i, ((keys, line), (body, seated))) in
-            self.document.crack.iter().zip(lines).zip(bodies.into_iter().zip(all_seated)).enumerate()
-        {
-            let (path, name) = (KeyPath::item("crack", i), name_of(i, keys));
-            let live = live_ends(&path, keys.tips, &name, &seated)?;
-            let mut crack = Crack {
-                body,
-                start_live: live[0],
-                end_live: live[1],
-                start_guide: None,
-                end_guide: None,
-                points: seated.points,
-                name,
-            };
-            self.guides(&path, keys, &mut crack, &line, scene, tolerance)?;
-            scene.cracks.push(crack);
+        seat_on_cracks(&mut seated, &bodies, reach);
+        let mut pieces: Vec<Vec<(usize, Seated)>> = vec![Vec::new(); lines.len()];
+        for ((&i, body), piece) in self.origin.cracks.iter().zip(bodies).zip(seated) {
+            pieces[i].push((body, piece));
+        }
+        for (i, ((keys, line), pieces)) in document.crack.iter().zip(lines).zip(pieces).enumerate() {
+            let path = KeyPath::item("crack", i);
+            let mut cracks = cracks_of(&path, keys.tips, &name_of(i, keys), pieces)?;
+            self.guides(&path, keys, &mut cracks, &line, scene, tolerance)?;
+            scene.cracks.extend(cracks);
         }
         Ok(())
     }
 
-    pub(super) fn body_of_crack(
+    /// The pieces of a crack in the material of its bodies, each with its body, in the order of the line.
+    fn pieces(
         &self,
         path: &KeyPath,
         keys: &CrackKeys,
         name: &str,
         line: &[Point],
-        scene: &Scene,
-    ) -> Resolved<usize> {
-        let candidates = self.bodies(path.then("body"), keys.body.as_deref(), scene)?;
-        if let [only] = candidates.as_slice() {
-            return Ok(*only);
+        scene: &mut Scene,
+        reach: f64,
+    ) -> Resolved<Vec<(usize, Seated)>> {
+        let bodies = self.bodies(path.then("body"), keys.body.as_deref(), scene)?;
+        let mut pieces = Vec::new();
+        for &body in &bodies {
+            let inside = seat_crack(line, &mut scene.bodies[body].region, reach);
+            pieces.extend(inside.into_iter().map(|piece| (body, piece)));
         }
-        let inside: Vec<usize> = candidates
-            .iter()
-            .copied()
-            .filter(|&b| {
-                let region = &scene.bodies[b].region;
-                let middles = line.windows(2).map(|w| nalgebra::center(&w[0], &w[1]));
-                line.iter().copied().chain(middles).any(|p| region.contains(p))
-            })
-            .collect();
-        match inside.as_slice() {
-            [only] => Ok(*only),
-            [] => {
-                let message = format!("crack `{name}` is outside of every body (it starts at {} m)", show(line[0]));
-                Err(SceneFault::new(path.then("line"), message, "move it into a body"))
-            }
-            several => {
-                let names: Vec<_> = several.iter().map(|&b| format!("`{}`", scene.bodies[b].name)).collect();
-                let message = format!("crack `{name}` runs through the bodies {}", names.join(", "));
-                Err(SceneFault::new(path.then("line"), message, "say which one it belongs to: `body = \"...\"`"))
-            }
+        pieces.sort_by(|(_, a), (_, b)| a.from.total_cmp(&b.from));
+        if pieces.is_empty() {
+            let whose = match bodies.as_slice() {
+                [only] => format!("body `{}`", scene.bodies[*only].name),
+                _ => "every body".to_owned(),
+            };
+            let message = format!("crack `{name}` is outside of {whose} (it starts at {} m)", show(line[0]));
+            return Err(SceneFault::new(path.then("line"), message, "move it into a body"));
         }
+        Ok(pieces)
     }
 
-    /// Fits the guides of one crack; `drawn` is its line before it was cut at the outline.
+    /// Fits the guides of one crack, given by its pieces; `drawn` is its line before it was cut at the outline.
     pub(super) fn guides(
         &self,
         path: &KeyPath,
         keys: &CrackKeys,
-        crack: &mut Crack,
+        pieces: &mut [Crack],
         drawn: &[Point],
         scene: &Scene,
         tolerance: f64,
     ) -> Resolved<()> {
-        let only_live = match (crack.start_live, crack.end_live) {
+        let Some(last) = pieces.len().checked_sub(1) else { return Ok(()) };
+        // The line begins in its first piece and ends in its last one.
+        let lives = [pieces[0].start_live, pieces[last].end_live];
+        let only_live = match (lives[0], lives[1]) {
             (true, false) => Some(0),
             (false, true) => Some(1),
             _ => None,
@@ -120,8 +105,8 @@ impl<'d> Resolver<'d> {
         }
         for (end, (guide, key)) in wanted.into_iter().enumerate().filter_map(|(end, w)| Some((end, w?))) {
             let path = path.then(key);
-            let live = [crack.start_live, crack.end_live][end];
-            let (Some(&tip), true) = ([crack.points.first(), crack.points.last()][end], live) else {
+            let crack = &mut pieces[[0, last][end]];
+            let (Some(&tip), true) = ([crack.points.first(), crack.points.last()][end], lives[end]) else {
                 let word = ["start", "end"][end];
                 let message =
                     format!("guide `{guide}` leads the {word} of crack `{}`, which is no live tip", crack.name);
@@ -156,15 +141,33 @@ fn name_of(position: usize, keys: &CrackKeys) -> String {
     keys.name.clone().unwrap_or_else(|| format!("crack-{}", position + 1))
 }
 
-/// Which ends are live: as named, or every end inside the body and on no other crack.
-fn live_ends(path: &KeyPath, tips: Option<Tips>, name: &str, seated: &Seated) -> Resolved<[bool; 2]> {
-    let Seated { points, mouths, junctions } = seated;
-    let live = tips.map_or([0, 1].map(|end| !mouths[end] && !junctions[end]), Tips::live);
-    for (end, word) in ["start", "end"].into_iter().enumerate() {
-        if live[end] && (mouths[end] || junctions[end]) {
-            let on = if mouths[end] { "the outline" } else { "another crack" };
-            return Err(no_tip(path, name, word, points[end * (points.len() - 1)], on));
+/// The cracks of the scene that the pieces of a drawn one are: of its name, or `name.1`, `name.2`, ...
+///
+/// Live are the ends of the drawn line that are named, or all that lie inside a body and on no other crack.
+fn cracks_of(path: &KeyPath, tips: Option<Tips>, name: &str, pieces: Vec<(usize, Seated)>) -> Resolved<Vec<Crack>> {
+    let count = pieces.len();
+    let mut cracks = Vec::with_capacity(count);
+    for (k, (body, Seated { points, mouths, junctions, .. })) in pieces.into_iter().enumerate() {
+        let mut live = [false; 2];
+        for (end, word) in ["start", "end"].into_iter().enumerate() {
+            let is_end_of_line = k == [0, count - 1][end];
+            let named = tips.map(|tips| tips.live()[end] && is_end_of_line);
+            let is_free = !mouths[end] && !junctions[end];
+            live[end] = named.unwrap_or(is_free);
+            if live[end] && !is_free {
+                let on = if mouths[end] { "the outline" } else { "another crack" };
+                return Err(no_tip(path, name, word, points[end * (points.len() - 1)], on));
+            }
         }
+        cracks.push(Crack {
+            name: if count > 1 { format!("{name}.{}", k + 1) } else { name.to_owned() },
+            body,
+            points,
+            start_live: live[0],
+            end_live: live[1],
+            start_guide: None,
+            end_guide: None,
+        });
     }
-    Ok(live)
+    Ok(cracks)
 }

@@ -57,8 +57,7 @@ impl<'d> Resolver<'d> {
         pictures: &'d [Option<Picture>],
         default_name: String,
     ) -> Self {
-        let (drawn_cracks, frames_by_range) = (document.crack.len(), document.frames.range.is_some());
-        let origin = Origin { drawn_cracks, frames_by_range, ..Origin::default() };
+        let origin = Origin { frames_by_range: document.frames.range.is_some(), ..Origin::default() };
         Self { document, drawing, pictures, default_name, origin, warnings: RefCell::default() }
     }
 

@@ -11,8 +11,8 @@ pub(crate) struct Origin {
     pub(super) materials: Vec<Option<usize>>,
     /// For each patch of toughness of the scene: which `[[toughness]]` it comes from.
     pub(super) toughness: Vec<usize>,
-    /// Number of `[[crack]]`; the cracks of the scene after these were scattered.
-    pub(super) drawn_cracks: usize,
+    /// For each drawn crack of the scene: which `[[crack]]` it is a piece of; the cracks of the scene after these were scattered.
+    pub(super) cracks: Vec<usize>,
     /// Whether the file has `frames.range` instead of `first` and `last`.
     pub(super) frames_by_range: bool,
 }
@@ -30,7 +30,10 @@ impl Origin {
                 "body" => *index = self.bodies.get(*index).copied().unwrap_or(*index),
                 "material" => *index = self.materials.get(*index).copied().flatten().unwrap_or(usize::MAX),
                 "toughness" => *index = self.toughness.get(*index).copied().unwrap_or(*index),
-                "crack" if *index >= self.drawn_cracks => return KeyPath::top("flaws"),
+                "crack" => match self.cracks.get(*index) {
+                    Some(&drawn) => *index = drawn,
+                    None => return KeyPath::top("flaws"),
+                },
                 _ => {}
             }
         }

@@ -11,7 +11,7 @@ const FEWEST_CELLS: f64 = 8.0;
 impl Resolver<'_> {
     /// Warns of cracks that the grid hardly sees.
     pub(super) fn short_cracks(&self, scene: &Scene) {
-        let drawn = self.document.crack.len();
+        let drawn = self.origin.cracks.len();
         let cells = |crack: &Crack| polyline_length(&crack.points) / scene.cell_size;
         let is_short = |crack: &&Crack| (crack.start_live || crack.end_live) && cells(crack) < FEWEST_CELLS;
         let remedy = |cells: f64| {
@@ -22,7 +22,7 @@ impl Resolver<'_> {
             let (cells, name) = (cells(crack), &crack.name);
             let message =
                 format!("crack `{name}` is {cells:.1} cells long: below {FEWEST_CELLS} its tips are measured badly");
-            self.warn(Warning::new(KeyPath::item("crack", i).then("line"), message, remedy(cells)));
+            self.warn(Warning::new(KeyPath::item("crack", self.origin.cracks[i]).then("line"), message, remedy(cells)));
         }
         let flaws = &scene.cracks[drawn..];
         let Some(shortest) = flaws.iter().filter(is_short).map(cells).min_by(f64::total_cmp) else { return };
