@@ -30,7 +30,10 @@ fn text(scene: &Scene, estimate: &Estimate) -> String {
         ("steps", estimate.steps.to_string()),
         ("frames", format!("{}-{}, showing {}", frames.first, frames.last, seconds(frames.time(frames.last)))),
         ("expected time", format!("{} for the solver", duration(estimate.seconds))),
-        ("expected memory", format!("{:.0} MiB for the solver", estimate.memory as f64 / (1024.0 * 1024.0))),
+        (
+            "expected memory",
+            format!("{:.0} MiB for the run, meshes included", estimate.memory as f64 / (1024.0 * 1024.0)),
+        ),
     ];
     rows.iter().map(|(name, value)| format!("{name:<16} {value}\n")).collect()
 }

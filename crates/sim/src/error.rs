@@ -24,7 +24,8 @@ pub enum SimulationError {
     },
     /// More memory than the machine has would be needed.
     #[error(
-        "{particles} particles need about {needed} MiB, more than the {available} MiB this machine has free; make `grid.particle_spacing` larger"
+        "{particles} particles need about {needed} MiB, more than the {available} MiB that are free; make `grid.particle_spacing` larger{}",
+        fitting.map_or(String::new(), |spacing| format!(": {spacing} m fits"))
     )]
     TooManyParticles {
         /// Number of particles.
@@ -33,6 +34,8 @@ pub enum SimulationError {
         needed: u64,
         /// Memory available [MiB].
         available: u64,
+        /// A particle spacing that fits [m].
+        fitting: Option<f64>,
     },
     /// Bodies reach too far for their particles and nodes to be counted.
     #[error(

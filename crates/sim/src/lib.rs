@@ -19,6 +19,7 @@ mod guide;
 mod kernel;
 mod look;
 mod measure;
+mod memory;
 mod particles;
 mod pieces;
 mod saved;

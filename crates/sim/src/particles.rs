@@ -4,7 +4,8 @@ use crate::SimulationError;
 use crate::scan::Places;
 use crate::selector::Selector;
 use crate::spans::{Span, SpanRows};
-use fissure_scene::{Body, Point, Region, Scene, Selection, Vector, bounds};
+use fissure_scene::{Point, Region, Scene, Selection, Vector, bounds};
+use std::ops::Range;
 
 /// The particles of all bodies at rest, in the order body, row, column. Shape: one entry per particle in every list.
 #[derive(Debug, Clone)]
@@ -29,14 +30,14 @@ pub(crate) struct Particles {
     lattice: SpanRows,
 }
 
-/// Memory a particle takes with its share of the grid and of a frame on its way to disk [bytes]: about 50 numbers of 8 bytes.
-const BYTES_PER_PARTICLE: u64 = 400;
+/// More places than this along an axis are not counted.
+const MOST_PLACES: f64 = (1 << 30) as f64;
 
 impl Particles {
     /// Fills the bodies of `scene` with particles on one lattice; those whose centre lies inside belong to the body.
     ///
     /// # Errors
-    /// When a body holds none, or the machine has not the memory for them.
+    /// When a body holds none, or the bodies reach too far to count their places.
     pub(crate) fn fill(scene: &Scene) -> Result<Self, SimulationError> {
         let (mut low, mut high) = bounds(&[]);
         for body in &scene.bodies {
@@ -44,44 +45,51 @@ impl Particles {
             (low, high) = (low.inf(&l), high.sup(&h));
         }
         let s = scene.particle_spacing;
-        check_memory(scene, s)?;
-        let mut particles = Self {
-            anchor: low,
-            spacing: s,
-            place: Vec::new(),
-            rest: Vec::new(),
-            body: Vec::new(),
-            material: Vec::new(),
-            volume: Vec::new(),
-            mass: Vec::new(),
-            lattice: SpanRows::default(),
-        };
+        let width = (high - low).amax();
+        if width / s >= MOST_PLACES {
+            return Err(SimulationError::TooWide { width, cell_size: scene.cell_size });
+        }
+        // Counted first, so that every list gets just the room it needs.
+        let places = Places { anchor: low, spacing: s };
+        let mut runs: Vec<(usize, i32, Range<i32>)> = Vec::new();
         for (index, body) in scene.bodies.iter().enumerate() {
-            let before = particles.len();
-            particles.fill_body(index as u32, body, scene);
-            if particles.len() == before {
+            let before = runs.len();
+            places.for_each_run_inside(&body.region, |row, columns| runs.push((index, row, columns)));
+            if runs.len() == before {
                 return Err(SimulationError::NoParticles { body: body.name.clone(), spacing: s });
+            }
+        }
+        let mut particles = Self::with_room(low, s, runs.iter().map(|(_, _, columns)| columns.len()).sum());
+        for (index, row, columns) in runs {
+            let body = &scene.bodies[index];
+            for column in columns {
+                let center = places.at(column, row);
+                let material = body.material_at(center);
+                particles.place.push([column, row]);
+                particles.rest.push(center);
+                particles.body.push(index as u32);
+                particles.material.push(material as u32);
+                particles.volume.push(s * s);
+                particles.mass.push(s * s * scene.materials[material].density);
             }
         }
         particles.lattice = lattice_of(&particles.place);
         Ok(particles)
     }
 
-    fn fill_body(&mut self, index: u32, body: &Body, scene: &Scene) {
-        let s = self.spacing;
-        let places = Places { anchor: self.anchor, spacing: s };
-        places.for_each_run_inside(&body.region, |j, columns| {
-            for i in columns {
-                let center = places.at(i, j);
-                let material = body.material_at(center);
-                self.place.push([i, j]);
-                self.rest.push(center);
-                self.body.push(index);
-                self.material.push(material as u32);
-                self.volume.push(s * s);
-                self.mass.push(s * s * scene.materials[material].density);
-            }
-        });
+    /// No particles, with room for `count`.
+    fn with_room(anchor: Point, spacing: f64, count: usize) -> Self {
+        Self {
+            anchor,
+            spacing,
+            place: Vec::with_capacity(count),
+            rest: Vec::with_capacity(count),
+            body: Vec::with_capacity(count),
+            material: Vec::with_capacity(count),
+            volume: Vec::with_capacity(count),
+            mass: Vec::with_capacity(count),
+            lattice: SpanRows::default(),
+        }
     }
 
     /// The particle at a place of the lattice.
@@ -164,34 +172,6 @@ fn lattice_of(place: &[[i32; 2]]) -> SpanRows {
         }
     }
     lattice
-}
-
-fn check_memory(scene: &Scene, spacing: f64) -> Result<(), SimulationError> {
-    let area: f64 = scene.bodies.iter().map(|b| b.region.area()).sum();
-    let particles = area / (spacing * spacing);
-    let needed = particles * BYTES_PER_PARTICLE as f64;
-    let Some(available) = available_memory() else { return Ok(()) };
-    if needed > available as f64 {
-        let mebibyte = f64::from(1 << 20);
-        return Err(SimulationError::TooManyParticles {
-            particles: particles as u64,
-            needed: (needed / mebibyte) as u64,
-            available: (available as f64 / mebibyte) as u64,
-        });
-    }
-    Ok(())
-}
-
-/// Memory the machine can still give [bytes]; none where the system does not say.
-fn available_memory() -> Option<u64> {
-    let mut system = sysinfo::System::new().ok()?;
-    system.refresh_memory();
-    Some(system.available_memory()).filter(|&bytes| bytes > 0)
-}
-
-/// Memory that `particles` particles take [bytes].
-pub(crate) fn memory(particles: usize) -> u64 {
-    particles as u64 * BYTES_PER_PARTICLE
 }
 
 /// Distance from `point` to the nearest ring of `region` [m].

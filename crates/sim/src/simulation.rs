@@ -3,9 +3,9 @@
 use crate::crack::{Crack, ENDS, slot};
 use crate::elastic::Elastic;
 use crate::formulation::{self, Choice};
-use crate::particles::{self, Particles};
+use crate::particles::Particles;
 use crate::solver::Solver;
-use crate::{SimulationError, pieces, saved};
+use crate::{SimulationError, memory, pieces, saved};
 use fissure_scene::{Energies, Formulation, Frame, Pose, Scene, TipRecord, Vector};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
@@ -73,7 +73,7 @@ pub struct Estimate {
     pub steps: u64,
     /// Name of the formulation and the reason for it.
     pub formulation: String,
-    /// Memory the solver needs [bytes].
+    /// Memory a run takes at most, frames on their way to disk and meshes included [bytes].
     pub memory: u64,
     /// Wall time expected on this machine [s], from a few steps timed here.
     pub seconds: f64,
@@ -121,11 +121,11 @@ impl Simulation {
     /// When the scene cannot be simulated: see [`SimulationError`].
     pub fn new(scene: &Scene) -> Result<Self, SimulationError> {
         let cracks = Crack::of_scene(scene);
-        let particles = Arc::new(Particles::fill(scene)?);
         let elastic: Vec<Elastic> = scene.materials.iter().map(|m| Elastic::new(m, scene.plane)).collect();
-        let choice = formulation::choose(scene, &elastic);
-        let scene = &formulation::settle(scene, choice.formulation);
-        let Choice { formulation, .. } = choice;
+        let Choice { formulation, .. } = formulation::choose(scene, &elastic);
+        let scene = &formulation::settle(scene, formulation);
+        memory::check(scene, formulation)?;
+        let particles = Arc::new(Particles::fill(scene)?);
         let solver = formulation::build(formulation, scene, particles.clone(), &cracks)?;
         let mut simulation = Self {
             scene: scene.clone(),
@@ -253,7 +253,7 @@ impl Simulation {
             stable_time_step: simulation.stable_time_step,
             steps: (steps_per_frame * frames) as u64,
             formulation: format!("{name}: {}", choice.reason),
-            memory: particles::memory(simulation.particles.len()),
+            memory: memory::needed(&simulation.scene, simulation.formulation) as u64,
             seconds: per_step * steps_per_frame * frames,
         })
     }
@@ -452,9 +452,10 @@ impl Simulation {
         if saved.version != env!("CARGO_PKG_VERSION") || saved.scene_hash != scene.hash {
             return Err(SimulationError::BadState("it is of another scene or version".into()));
         }
-        let particles = Arc::new(Particles::fill(scene)?);
         let elastic: Vec<Elastic> = scene.materials.iter().map(|m| Elastic::new(m, scene.plane)).collect();
         let scene = &formulation::settle(scene, saved.formulation);
+        memory::check(scene, saved.formulation)?;
+        let particles = Arc::new(Particles::fill(scene)?);
         let cracks = &saved.state.cracks;
         let solver = formulation::restore(saved.formulation, scene, particles.clone(), cracks, &saved.solver)?;
         Ok(Self {

@@ -309,7 +309,10 @@ impl Total {
             body: self.particles.body.clone(),
             piece: vec![0; n],
             rest: self.particles.rest.clone(),
-            ..ParticleFrame::default()
+            position: Vec::with_capacity(n),
+            velocity: Vec::with_capacity(n),
+            deformation_gradient: Vec::with_capacity(n),
+            cauchy_stress: Vec::with_capacity(n),
         };
         for p in 0..n {
             let e = &self.elastic[self.particles.material[p] as usize];

@@ -8,6 +8,7 @@ mod boundary;
 mod contact;
 mod cut;
 mod look;
+mod memory;
 mod recut;
 mod refresh;
 mod rows;

@@ -229,3 +229,29 @@ fn nodes_and_state_go_with_the_material() {
         assert!(both.save().len() < 2 * alone.save().len() + 10_000, "{}", both.save().len());
     }
 }
+
+/// Truth: one thread. A plate of so many nodes that rows are shared out, with a hole so that rows have several runs.
+#[test]
+fn threads_change_no_bit_of_the_forces() {
+    let mut region = test_scenes::rectangle([0.0, 0.0], [17.0, 16.0]);
+    let mut hole = test_scenes::rectangle([3.1, 2.9], [7.3, 12.2]).exterior;
+    hole.reverse();
+    region.holes.push(hole);
+    let mut scene = test_scenes::free_body(region, 0.05);
+    scene.solver.formulation = Formulation::Total;
+    scene.solver.kernel = Kernel::Bilinear;
+    let (total, _) = solver(&scene);
+    let fields = total.state.mass.len();
+    let u = [0.37, 0.71].map(|rate| (0..fields).map(|d| 1e-3 * (d as f64 * rate).sin()).collect());
+    let forces = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let mut force = Default::default();
+        pool.install(|| total.internal_forces(&u, &mut force));
+        force
+    };
+    let alone = forces(1);
+    assert!(alone[0].iter().any(|&f| f != 0.0));
+    for threads in [2, 3, 7] {
+        assert!(forces(threads) == alone, "{threads} threads");
+    }
+}

@@ -153,7 +153,10 @@ impl Updated {
             body: self.particles.body.clone(),
             piece: vec![0; n],
             rest: self.particles.rest.clone(),
-            ..ParticleFrame::default()
+            position: Vec::with_capacity(n),
+            velocity: Vec::with_capacity(n),
+            deformation_gradient: Vec::with_capacity(n),
+            cauchy_stress: Vec::with_capacity(n),
         };
         for (p, point) in self.state.points.iter().enumerate() {
             let (mu, lambda) = self.moduli(p);

@@ -11,6 +11,7 @@ mod boundary;
 mod contact;
 mod faces;
 mod look;
+mod memory;
 mod plastic;
 mod stability;
 mod stencils;

@@ -209,7 +209,7 @@ impl Cut {
 }
 
 /// One pair of a divided stencil before its field has a number.
-struct Raw {
+pub(super) struct Raw {
     node: u32,
     /// Position of the node [m].
     place: Point,

@@ -1,0 +1,219 @@
+//! How much memory a run takes: counted from the sizes of what it holds, before any of it is there.
+
+use crate::SimulationError;
+use crate::kernel;
+use crate::total::Total;
+use crate::updated::Updated;
+use fissure_scene::{Formulation, Matrix, OnDistortion, Point, Scene, Vector, polyline_length};
+
+/// What a scene is made of, as numbers, before any of it is laid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Amounts {
+    /// Particles of all bodies.
+    pub(crate) particles: f64,
+    /// Nodes of the grid.
+    pub(crate) nodes: f64,
+    /// Vertices of all outlines, half a cell apart.
+    pub(crate) outline_points: f64,
+    /// Particles that do not lie in whole cells: along the outlines, and within reach of cracks.
+    pub(crate) cut_particles: f64,
+    /// Of these, those within reach of cracks.
+    pub(crate) crack_particles: f64,
+    /// Cells within reach of cracks.
+    pub(crate) crack_cells: f64,
+}
+
+/// What a formulation of the solver holds [bytes].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Need {
+    /// While it runs.
+    pub(crate) solver: f64,
+    /// Its state as bytes.
+    pub(crate) state: f64,
+}
+
+/// Rows of nodes beside an outline that no inner cell accounts for: what stencils reach beyond it, and what bands and spans hold besides.
+const ROWS_BESIDE_OUTLINE: f64 = 5.0;
+
+/// What the program takes without a scene [bytes]: `fissure run` on bodies of a few particles.
+const PROGRAM: f64 = 10.5 * MEBIBYTE;
+
+/// What the division keeps for each cell near a crack: its entry in the map, and a list of a few segments [bytes].
+const NEAR_CELL: f64 = 128.0;
+
+/// What making a mesh takes for each vertex of the outlines [bytes].
+const MESH_PER_POINT: f64 = 1000.0;
+
+/// Frames held at once: the one at hand, of which the mesh is made afterwards, its numbers as tensors, these as a file.
+const FRAMES: f64 = 3.0;
+
+/// States held at once: the one before and the one after a frame.
+const STATES: f64 = 2.0;
+
+const MEBIBYTE: f64 = (1 << 20) as f64;
+
+/// Bytes of the particles at rest: places, positions, numbers of body and material, volume and mass, and the number of the fragment.
+const PARTICLE: usize = size_of::<[i32; 2]>() + size_of::<Point>() + 3 * size_of::<u32>() + 2 * size_of::<f64>();
+
+/// Bytes of a particle in a frame.
+const FRAME_PARTICLE: usize =
+    3 * size_of::<u32>() + 2 * size_of::<Point>() + size_of::<Vector>() + 2 * size_of::<Matrix>();
+
+/// Bytes of a vertex of an outline in a frame.
+const FRAME_OUTLINE_POINT: usize = 2 * size_of::<Point>() + size_of::<Vector>();
+
+impl Amounts {
+    /// Counts what `scene` is made of, in a time that goes with its outlines.
+    pub(crate) fn of(scene: &Scene) -> Self {
+        let (s, h) = (scene.particle_spacing, scene.cell_size);
+        let area: f64 = scene.bodies.iter().map(|b| b.region.area()).sum();
+        let ring_length = |ring: &[Point]| polyline_length(ring) + (ring[ring.len() - 1] - ring[0]).norm();
+        let rings = scene.bodies.iter().flat_map(|b| b.region.rings()).filter(|ring| !ring.is_empty());
+        let outline: f64 = rings.map(ring_length).sum();
+        let reach = 0.5 * kernel::width(scene.solver.kernel) as f64;
+        let segments = scene.cracks.iter().flat_map(|c| c.points.windows(2));
+        let crack_cells: f64 = segments.map(|w| cells_around(w[0], w[1], h, reach)).sum();
+        let particles = area / (s * s);
+        let crack_particles = (crack_cells * (h / s).powi(2)).min(particles);
+        Self {
+            particles,
+            nodes: area / (h * h) + ROWS_BESIDE_OUTLINE * outline / h,
+            outline_points: 2.0 * outline / h,
+            cut_particles: (outline / s + crack_particles).min(particles),
+            crack_particles,
+            crack_cells,
+        }
+    }
+}
+
+/// Pieces of a crack, in cells, that get a box of their own when the cells around it are counted.
+const PIECE: f64 = 16.0;
+
+/// How many cells lie in boxes around the pieces of a segment that leave `reach` cells on all sides: more than the crack divides now, as much as its lists
+/// take while they are laid.
+fn cells_around(a: Point, b: Point, cell_size: f64, reach: f64) -> f64 {
+    let pieces = ((b - a).amin() / (PIECE * cell_size)).ceil().max(1.0);
+    let along = (b - a).abs() / (cell_size * pieces);
+    pieces * (along.x + 2.0 * reach + 1.0) * (along.y + 2.0 * reach + 1.0)
+}
+
+/// Memory that a run of `scene` takes, meshes included, when it begins in `formulation` [bytes].
+pub(crate) fn needed(scene: &Scene, formulation: Formulation) -> f64 {
+    let amounts = Amounts::of(scene);
+    let need = match formulation {
+        Formulation::Updated => Updated::memory(scene, &amounts),
+        _ if scene.solver.on_distortion == OnDistortion::Switch => {
+            let (total, updated) = (Total::memory(scene, &amounts), Updated::memory(scene, &amounts));
+            Need { solver: total.solver.max(updated.solver), state: total.state.max(updated.state) }
+        }
+        _ => Total::memory(scene, &amounts),
+    };
+    let frame = amounts.particles * FRAME_PARTICLE as f64 + amounts.outline_points * FRAME_OUTLINE_POINT as f64;
+    PROGRAM
+        + amounts.particles * PARTICLE as f64
+        + amounts.outline_points * MESH_PER_POINT
+        + amounts.crack_cells * NEAR_CELL
+        + need.solver
+        + FRAMES * frame
+        + STATES * need.state
+}
+
+/// Checks that a run fits into the memory there is.
+///
+/// # Errors
+/// [`SimulationError::TooManyParticles`] with the spacing that fits.
+pub(crate) fn check(scene: &Scene, formulation: Formulation) -> Result<(), SimulationError> {
+    let Some(available) = available() else { return Ok(()) };
+    check_against(scene, formulation, available as f64)
+}
+
+fn check_against(scene: &Scene, formulation: Formulation, available: f64) -> Result<(), SimulationError> {
+    let needed = needed(scene, formulation);
+    if needed <= available {
+        return Ok(());
+    }
+    Err(SimulationError::TooManyParticles {
+        particles: Amounts::of(scene).particles.round() as u64,
+        needed: (needed / MEBIBYTE).ceil() as u64,
+        available: (available / MEBIBYTE) as u64,
+        fitting: fitting_spacing(scene, formulation, available),
+    })
+}
+
+/// A spacing of particles with which a run fits, two digits; none where it hardly depends on that.
+fn fitting_spacing(scene: &Scene, formulation: Formulation, available: f64) -> Option<f64> {
+    let mut coarser = scene.clone();
+    let cells = scene.cell_size / scene.particle_spacing;
+    (0..200).map(|k| scene.particle_spacing * 1.1_f64.powi(k + 1)).find_map(|spacing| {
+        let digit = 10.0_f64.powf(spacing.log10().floor() - 1.0);
+        let spacing = (spacing / digit).ceil() * digit;
+        (coarser.particle_spacing, coarser.cell_size) = (spacing, cells * spacing);
+        (needed(&coarser, formulation) <= available).then_some(spacing)
+    })
+}
+
+/// Memory that this process can still get [bytes]: what the machine has free, within the limits of its control group and of its address space. None where the
+/// system does not say.
+fn available() -> Option<u64> {
+    let free = sysinfo::System::new().ok().and_then(|mut system| {
+        system.refresh_memory();
+        let machine = Some(system.available_memory()).filter(|&bytes| bytes > 0);
+        machine.into_iter().chain(system.cgroup_limits().map(|limits| limits.free_memory)).min()
+    });
+    free.into_iter().chain(address_space()).min()
+}
+
+/// Limit of the address space of this process [bytes], as set by `ulimit -v`.
+#[cfg(unix)]
+fn address_space() -> Option<u64> {
+    rustix::process::getrlimit(rustix::process::Resource::As).current
+}
+
+/// Other systems have no such limit.
+#[cfg(not(unix))]
+fn address_space() -> Option<u64> {
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::panic)]
+    use super::*;
+    use crate::Simulation;
+    use crate::test_scenes::{add_body, free_body, rectangle};
+
+    /// Truth: the laid scene, wherever the second body is.
+    #[test]
+    fn amounts_are_those_of_the_laid_scene() {
+        let mut scene = free_body(rectangle([0.0, 0.0], [4.0, 9.0]), 0.05);
+        add_body(&mut scene, [1e5, 3e4]);
+        let amounts = Amounts::of(&scene);
+        let laid = Simulation::new(&scene).unwrap();
+        assert!((amounts.particles / laid.particles() as f64 - 1.0).abs() < 0.01, "{amounts:?}");
+        assert_eq!(amounts.outline_points, 2.0 * 26.0 / 0.05);
+    }
+
+    /// Truth: what is told is what is checked, and the spacing that is named fits.
+    #[test]
+    fn what_does_not_fit_is_refused_at_once_with_a_spacing_that_fits() {
+        // 1e12 particles.
+        let mut scene = free_body(rectangle([0.0, 0.0], [1.0, 1.0]), 1e-6);
+        for formulation in [Formulation::Total, Formulation::Updated] {
+            let available = 2.0 * 1024.0 * MEBIBYTE;
+            let found = check_against(&scene, formulation, available);
+            let Err(SimulationError::TooManyParticles { particles, needed, available: 2048, fitting: Some(fitting) }) =
+                found
+            else {
+                panic!("{found:?}");
+            };
+            assert!((particles as f64 / 1e12 - 1.0).abs() < 1e-9 && needed > 100_000_000);
+            (scene.particle_spacing, scene.cell_size) = (fitting, 2.0 * fitting);
+            assert_eq!(check_against(&scene, formulation, available), Ok(()));
+            // No more than a tenth too coarse, and its rounding.
+            (scene.particle_spacing, scene.cell_size) = (fitting / 1.25, 2.0 * fitting / 1.25);
+            assert!(check_against(&scene, formulation, available).is_err());
+            (scene.particle_spacing, scene.cell_size) = (1e-6, 2e-6);
+        }
+        assert!(matches!(Simulation::new(&scene), Err(SimulationError::TooManyParticles { .. })));
+    }
+}

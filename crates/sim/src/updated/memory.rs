@@ -1,0 +1,42 @@
+//! What the solver holds, counted before it is there.
+
+use super::faces::Tracer;
+use super::stencils::{Entry, Raw};
+use super::{MaterialPoint, Motion, PlasticPart, Updated};
+use crate::kernel;
+use crate::memory::{Amounts, Need};
+use fissure_scene::{Kernel, Matrix, Scene, Transfer, Vector};
+
+/// Lists of a number per field: mass; x and y of the velocities before and after.
+const NUMBERS_PER_FIELD: usize = 1 + 2 * 2;
+
+impl Updated {
+    /// What a run of `scene` holds.
+    pub(crate) fn memory(scene: &Scene, amounts: &Amounts) -> Need {
+        let if_any = |holds: bool, size: usize| if holds { size } else { 0 };
+        let settings = &scene.solver;
+        let has_cracks = !scene.cracks.is_empty();
+        // Velocities that go to the grid once more.
+        let sends_back = settings.transfer == Transfer::Xpic || settings.kernel == Kernel::Bilinear;
+        let saved = size_of::<MaterialPoint>()
+            + if_any(settings.transfer == Transfer::Apic, size_of::<Matrix>())
+            + if_any(scene.materials.iter().any(|m| m.plasticity.is_some()), size_of::<PlasticPart>());
+        // Its row and its place in the order of rows; its motion and its row among those that cracks divide.
+        let particle = saved
+            + 2 * size_of::<u32>()
+            + if_any(has_cracks, size_of::<Motion>() + size_of::<u32>())
+            + if_any(sends_back, size_of::<Vector>());
+        let node = NUMBERS_PER_FIELD * size_of::<f64>()
+            + if_any(has_cracks, size_of::<u32>())
+            + if_any(sends_back, size_of::<Vector>());
+        let divided = kernel::width(settings.kernel).pow(2) * (size_of::<Entry>() + size_of::<Raw>());
+        let outlines = amounts.outline_points * size_of::<Tracer>() as f64;
+        Need {
+            solver: amounts.particles * particle as f64
+                + amounts.nodes * node as f64
+                + amounts.crack_particles * divided as f64
+                + outlines,
+            state: amounts.particles * saved as f64 + outlines,
+        }
+    }
+}
