@@ -234,3 +234,23 @@ fn masks_filters_patterns_and_pictures_are_told() {
         assert_eq!(warnings.matches("in line").count(), 1, "{warnings}");
     }
 }
+
+/// Parts that have no room for a particle are left out and told, as long as there are others.
+#[test]
+fn crumbs_are_left_out_and_told() {
+    let drawing = svg(
+        "viewBox='0 0 20 20'",
+        "<g id='b'><rect width='10' height='10'/><rect x='12' width='.4' height='.3'/><path d='M14 2L19 7L19 7.1L14 2.1Z'/></g>",
+    );
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("d.svg"), &drawing).unwrap();
+    let scene = folder.path().join("scene.toml");
+    let rest = "[grid]\nparticle_spacing = 0.5\n";
+    std::fs::write(&scene, format!("[drawing]\nfile = 'd.svg'\nwidth = 20\n{}{rest}", body("b"))).unwrap();
+    let loaded = fissure_scene::load_with_warnings(&scene, &[]).unwrap();
+    assert_eq!(loaded.scene.bodies.len(), 1);
+    let told = loaded.warnings.iter().find(|w| w.message.contains("left out")).expect("a warning");
+    let words = ["2 of 3 parts of body `b`", "0.5 m", "(4, 2."];
+    words.iter().for_each(|word| assert!(told.message.contains(word), "{word}: {}", told.message));
+    assert!(told.remedy.contains("0.17677"), "{}", told.remedy);
+}

@@ -38,7 +38,7 @@ fn limits_are_told_and_quick() {
         (
             "attributes",
             svg(&format!("<g {}/>{SQUARE}", (0..9999).map(|i| format!("a{i}='' ")).collect::<String>())),
-            "500 attributes",
+            "100 attributes",
         ),
         ("nesting", svg(&nested(4000)), "128 deep"),
         ("doubled uses", svg(&format!("<g id='u0'>{SQUARE}</g>{doubled}")), "200000"),
@@ -69,11 +69,34 @@ fn limits_are_told_and_quick() {
             format!("<!DOCTYPE svg [<!ENTITY a \"&b;\"><!ENTITY b \"&a;\">]>{}", svg("<text>&a;</text>")),
             "entities",
         ),
-        ("text", svg(&format!("<text id='b'>{}</text>", many(20_000, "i"))), "10000"),
+        ("text", svg(&format!("<text id='b'>{}</text>", many(20_000, "i"))), "5000"),
         (
             "numbers",
             svg(&format!("<path id='b' d='M0 0{}'/>", many(2_200_000, "l1 1"))),
             "numbers when its references are followed, more than 4000000",
+        ),
+        (
+            "parts",
+            svg(&format!(
+                "<path id='b' d='{}'/>",
+                (0..2500).map(|i| format!("M{} {}h1v1h-1z", 2 * (i % 50), 2 * (i / 50))).collect::<String>()
+            )),
+            "2500 parts",
+        ),
+        (
+            "crossings of elements",
+            svg(&format!(
+                "<g id='b'>{}</g>",
+                (0..150)
+                    .map(|i| format!("<rect x='{i}' width='.5' height='150'/><rect y='{i}' width='150' height='.5'/>"))
+                    .collect::<String>()
+            )),
+            "cross too often",
+        ),
+        (
+            "stroked segments",
+            svg(&format!("<path id='b' fill='none' stroke='red' d='M0 0{}'/>", many(30_000, "l1 1"))),
+            "20000",
         ),
         ("crossings", svg(&format!("<path id='b' d='M{scribble}'/>")), "cross too often"),
         (

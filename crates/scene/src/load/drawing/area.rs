@@ -79,16 +79,16 @@ impl Area {
 
     /// What any of the areas covers, joined where they share an edge but for a gap of at most `gap` [m].
     ///
-    /// Holes narrower than that, which are what is left of such gaps, are filled.
-    pub(super) fn joined(areas: &[Self], gap: f64, grid: Grid) -> Self {
+    /// Holes narrower than that, which are what is left of such gaps, are filled. None when there are too many such edges.
+    pub(super) fn joined(areas: &[Self], gap: f64, grid: Grid) -> Option<Self> {
         let shapes = areas.iter().map(|area| area.rings().collect());
-        let mut joined = Self::union_with(areas, &bridges(shapes, gap / grid.step));
+        let mut joined = Self::union_with(areas, &bridges(shapes, gap / grid.step)?);
         for shape in &mut joined.0 {
             let mut rings = std::mem::take(shape).into_iter();
             shape.extend(rings.next());
             shape.extend(rings.filter(|ring| mean_width(&places(ring, grid)) >= gap));
         }
-        joined
+        Some(joined)
     }
 
     fn union_with(areas: &[Self], strips: &[Vec<GridPoint>]) -> Self {

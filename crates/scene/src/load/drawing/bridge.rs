@@ -4,6 +4,7 @@
 //! edge of one shape faces an edge of another closer than `reach`, the strip between them is added.
 
 use super::area::GridPoint;
+use super::limits::MOST_STRIPS;
 
 /// A strip counts from so many times its reach in length on: edges that meet in a corner only are no shared edge.
 const SHORTEST: f64 = 4.0;
@@ -18,10 +19,14 @@ struct Edge {
     b: [f64; 2],
 }
 
-/// The strips between edges of different shapes that face each other within `reach` [grid steps], counter-clockwise.
+/// The strips between edges of different shapes that face each other within `reach` [grid steps], counter-clockwise; none
+/// when there are too many.
 ///
 /// `shapes`: the rings of each, exteriors counter-clockwise, holes clockwise.
-pub(super) fn bridges<'a>(shapes: impl Iterator<Item = Vec<&'a [GridPoint]>>, reach: f64) -> Vec<Vec<GridPoint>> {
+pub(super) fn bridges<'a>(
+    shapes: impl Iterator<Item = Vec<&'a [GridPoint]>>,
+    reach: f64,
+) -> Option<Vec<Vec<GridPoint>>> {
     let mut edges: Vec<Edge> = Vec::new();
     for (shape, rings) in shapes.enumerate() {
         for ring in rings {
@@ -42,9 +47,12 @@ pub(super) fn bridges<'a>(shapes: impl Iterator<Item = Vec<&'a [GridPoint]>>, re
         for f in open.iter().filter(|f| f.shape != e.shape && f.a[1].max(f.b[1]) >= low && f.a[1].min(f.b[1]) <= high) {
             strips.extend(strip(&e, f, reach));
         }
+        if strips.len() > MOST_STRIPS {
+            return None;
+        }
         open.push(e);
     }
-    strips
+    Some(strips)
 }
 
 /// The strip between two edges, where they run in opposite directions, outsides facing, within `reach`.

@@ -1,7 +1,7 @@
 //! What a drawing grows to when its references are followed, and whether its numbers can be computed with.
 
 use super::limits::*;
-use super::styles::Styles;
+use super::styles::{Styles, too_many_steps};
 use std::collections::HashMap;
 use usvg::roxmltree::{Document, Node};
 
@@ -22,9 +22,12 @@ pub(super) fn check_document(document: &Document<'_>, styles: &Styles<'_>) -> Re
     let cost = walk.cost(root, 0)?;
     let too_many = |count: u64, most: u64, what: &str| {
         let message = format!("the drawing has {count} {what} when its references are followed, more than {most}");
-        if count > most { Err(Excess::new(root.range(), message)) } else { Ok(()) }
+        if count > most { Err(Excess::new(start_of(&root), message)) } else { Ok(()) }
     };
     too_many(cost.elements, MOST_ELEMENTS, "elements")?;
+    if cost.elements as f64 * styles.steps_per_element > MOST_STYLE_STEPS {
+        return Err(Excess::new(start_of(&root), too_many_steps()));
+    }
     too_many(cost.numbers, MOST_NUMBERS, "numbers")?;
     too_many(cost.characters, MOST_CHARACTERS, "characters of text")
 }

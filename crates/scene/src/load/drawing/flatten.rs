@@ -1,16 +1,11 @@
 //! Curves as polylines, and how much work an element may make.
 
 use super::area::GridPoint;
+use super::limits::{MOST_CROSSINGS, MOST_PAIRS, MOST_POINTS};
 use crate::geometry::Point;
 use crate::load::seating::Complaint;
 use kurbo::{BezPath, PathEl};
 
-/// Points that the curves of one element may be flattened to.
-const MOST_POINTS: usize = 200_000;
-/// Crossings of its outlines that may be resolved.
-const MOST_CROSSINGS: usize = 200_000;
-/// Pairs of edges that may be looked at to count these.
-const MOST_PAIRS: usize = 200_000_000;
 /// A drawing is single precision: to flatten finer than this part of a curve's size has no meaning.
 const FINEST: f64 = 1.0 / (1 << 22) as f64;
 
@@ -36,10 +31,12 @@ impl Budget {
     }
 
     /// Takes off as many crossings as `rings` have with themselves and each other.
-    pub(super) fn spend_crossings(&mut self, rings: &[Vec<GridPoint>]) -> Result<(), Complaint> {
+    pub(super) fn spend_crossings<'a>(
+        &mut self,
+        rings: impl Iterator<Item = &'a [GridPoint]>,
+    ) -> Result<(), Complaint> {
         let mut edges: Vec<[GridPoint; 2]> = rings
-            .iter()
-            .flat_map(|ring| (0..ring.len()).map(|i| [ring[i], ring[(i + 1) % ring.len()]]))
+            .flat_map(|ring| (0..ring.len()).map(move |i| [ring[i], ring[(i + 1) % ring.len()]]))
             .map(|[a, b]| if a.x <= b.x { [a, b] } else { [b, a] })
             .collect();
         edges.sort_by_key(|[a, _]| a.x);
@@ -51,14 +48,17 @@ impl Budget {
                 open.iter().filter(|f| f[0].y.max(f[1].y) >= low && f[0].y.min(f[1].y) <= high && cross(&e, f));
             let spent = crossing.count();
             let left = (self.crossings.checked_sub(spent), self.pairs.checked_sub(open.len()));
-            let (Some(crossings), Some(pairs)) = left else {
-                let message = format!("its outlines cross too often to be resolved (more than {MOST_CROSSINGS} times)");
-                return Err((message, "simplify its paths in the SVG editor".into()));
-            };
+            let (Some(crossings), Some(pairs)) = left else { return Err(Self::too_many_crossings()) };
             (self.crossings, self.pairs) = (crossings, pairs);
             open.push(e);
         }
         Ok(())
+    }
+
+    /// What is told when crossings, or places where outlines run along each other, are too many.
+    pub(super) fn too_many_crossings() -> Complaint {
+        let message = format!("its outlines cross too often to be resolved (more than {MOST_CROSSINGS} times)");
+        (message, "simplify its paths in the SVG editor".into())
     }
 }
 

@@ -28,14 +28,12 @@ use super::seating::Complaint;
 use crate::document::Drawing;
 use crate::fault::{SceneFault, show};
 use crate::geometry::{Point, Region, bounds};
-use area::{Area, Grid};
 use effects::Effects;
-use flatten::Budget;
 use fonts::Fonts;
 use kurbo::Affine;
-use limits::{Excess, MOST_NODES};
+use limits::{Excess, MOST_NODES, MOST_PARTS};
 use names::{Element, Names};
-use piece::{Piece, Surroundings, collect_pieces};
+use piece::{Piece, Surroundings, Tracing, collect_pieces};
 use std::path::{Path, PathBuf};
 use styles::Styles;
 use usvg::roxmltree::{Document, Error, ParsingOptions, TextPos};
@@ -128,17 +126,17 @@ impl LoadedDrawing {
         let place = |(message, remedy): Complaint| (format!("{}: {message}", self.names.place(name, element)), remedy);
         self.effects.check_masks(element.number, &self.names.place(name, element))?;
         let pieces = self.pieces(name, element, |piece| piece.is_painted())?;
-        let grid = Grid::covering(self.reach(&pieces).map_err(place)?);
-        let mut budget = Budget::of_element();
-        let areas = pieces.iter().map(|piece| piece.area(grid, tolerance, &mut budget));
-        let areas = areas.collect::<Result<Vec<_>, _>>().map_err(place)?;
-        let area = match areas.as_slice() {
-            [only] => only.clone(),
-            several => Area::joined(several, GAP * tolerance, grid),
-        };
-        let regions = area.regions(grid, ROUNDING * tolerance, NOTCH * tolerance);
+        let mut tracing = Tracing::new(self.reach(&pieces).map_err(place)?, tolerance);
+        let areas =
+            pieces.iter().map(|piece| piece.area(&mut tracing)).collect::<Result<Vec<_>, _>>().map_err(place)?;
+        let area = tracing.joined(&areas, GAP * tolerance).map_err(place)?;
+        let regions = area.regions(tracing.grid(), ROUNDING * tolerance, NOTCH * tolerance);
         if regions.is_empty() {
             return Err(place(("it encloses no area".into(), "draw a closed outline".into())));
+        }
+        if regions.len() > MOST_PARTS {
+            let message = format!("it falls into {} parts, more than {MOST_PARTS}", regions.len());
+            return Err(place((message, "simplify it in the SVG editor".into())));
         }
         Ok(regions)
     }
@@ -148,11 +146,10 @@ impl LoadedDrawing {
         let element = self.names.find(name)?;
         let place = |(message, remedy): Complaint| (format!("{}: {message}", self.names.place(name, element)), remedy);
         let pieces = self.pieces(name, element, |_| true)?;
-        self.reach(&pieces).map_err(place)?;
-        let mut budget = Budget::of_element();
+        let mut tracing = Tracing::new(self.reach(&pieces).map_err(place)?, tolerance);
         let mut lines = Vec::new();
         for piece in &pieces {
-            lines.extend(piece.polylines(tolerance, &mut budget).map_err(place)?);
+            lines.extend(piece.polylines(&mut tracing).map_err(place)?);
         }
         match (lines.pop(), lines.len()) {
             (Some((points, false)), 0) => Ok(without_repeats(points)),

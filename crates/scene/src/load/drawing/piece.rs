@@ -5,6 +5,7 @@ use super::flatten::{Budget, Polyline, flatten};
 use super::stroke::stroke_outline;
 use crate::load::seating::Complaint;
 use kurbo::{Affine, BezPath, PathEl, Rect};
+use std::collections::HashMap;
 
 /// A path with its map to metres and the clips that are on it.
 #[derive(Clone)]
@@ -91,65 +92,97 @@ impl Piece<'_> {
     }
 
     /// The area that it covers: of its fill, or of its stroke when its fill covers nothing; within its clips.
-    pub(super) fn area(&self, grid: Grid, tolerance: f64, budget: &mut Budget) -> Result<Area, Complaint> {
+    pub(super) fn area(&self, tracing: &mut Tracing) -> Result<Area, Complaint> {
         let path = bezier(self.path.data());
         let mut area = Area::default();
         if let Some(rule) = self.fill() {
-            area = fill(&(self.around.to_metres * &path), rule, grid, tolerance, budget)?;
+            area = tracing.fill(&(self.around.to_metres * &path), rule)?;
         }
         if let (Some(pen), true) = (self.pen(), area.is_empty()) {
-            let outline = stroke_outline(&path, pen, tolerance / most_stretch(self.around.to_metres))?;
-            area = fill(&(self.around.to_metres * &outline), FillRule::NonZero, grid, tolerance, budget)?;
+            let outline = stroke_outline(&path, pen, tracing.tolerance / most_stretch(self.around.to_metres))?;
+            area = tracing.fill(&(self.around.to_metres * &outline), FillRule::NonZero)?;
         }
         for &(clip, to_metres) in &self.around.clips {
-            area = area.intersection(&clip_area(clip, to_metres, grid, tolerance, budget)?);
+            area = tracing.clipped(&area, clip, to_metres)?;
         }
         Ok(area)
     }
 
-    /// The polylines that it draws [m], each with whether it is closed; outside of its clips they are cut off.
-    pub(super) fn polylines(&self, tolerance: f64, budget: &mut Budget) -> Result<Vec<Polyline>, Complaint> {
-        let mut lines = flatten(&(self.around.to_metres * bezier(self.path.data())), tolerance, budget)?;
-        if self.around.clips.is_empty() {
-            return Ok(lines);
-        }
-        let reach = self.reach();
-        let grid =
-            Grid::covering([reach.x0, reach.y0, reach.x1, reach.y1].into_iter().fold(0.0, |r, x| x.abs().max(r)));
+    /// The polylines that it draws [m]; outside of its clips they are cut off.
+    pub(super) fn polylines(&self, tracing: &mut Tracing) -> Result<Vec<Polyline>, Complaint> {
+        let path = self.around.to_metres * bezier(self.path.data());
+        let mut lines = flatten(&path, tracing.tolerance, &mut tracing.budget)?;
         for &(clip, to_metres) in &self.around.clips {
-            let area = clip_area(clip, to_metres, grid, tolerance, budget)?;
-            lines = lines.into_iter().flat_map(|line| area.cut_line(line, grid)).collect();
+            let area = tracing.clip_area(clip, to_metres)?;
+            lines = lines.into_iter().flat_map(|line| area.cut_line(line, tracing.grid)).collect();
         }
         Ok(lines)
     }
 }
 
-/// The area that a clip leaves: what its shapes fill by their clip rules, within the clips that are on them and on it.
-fn clip_area(
-    clip: &usvg::ClipPath,
-    to_metres: Affine,
+/// What turns the pieces of one element into areas: how finely, with what may still be spent, and the clips so far.
+pub(super) struct Tracing {
     grid: Grid,
     tolerance: f64,
-    budget: &mut Budget,
-) -> Result<Area, Complaint> {
-    let inside = Surroundings::outermost(to_metres * affine(clip.transform()));
-    let mut pieces = Vec::new();
-    collect_pieces(clip.root(), None, &inside, &mut pieces);
-    let shapes = pieces.iter().map(|piece| piece.area(grid, tolerance, budget)).collect::<Result<Vec<_>, _>>()?;
-    let area = Area::union(&shapes);
-    match clip.clip_path() {
-        Some(outer) => Ok(area.intersection(&clip_area(outer, to_metres, grid, tolerance, budget)?)),
-        None => Ok(area),
-    }
+    budget: Budget,
+    /// By the id of the clip and the map of its user to metres.
+    clips: HashMap<(String, [u64; 6]), Area>,
 }
 
-/// What a path in metres fills; open subpaths are closed by a straight line, as SVG does.
-fn fill(path: &BezPath, rule: FillRule, grid: Grid, tolerance: f64, budget: &mut Budget) -> Result<Area, Complaint> {
-    let lines = flatten(path, tolerance, budget)?;
-    let rings: Vec<Vec<GridPoint>> =
-        lines.into_iter().map(|(points, _)| points.into_iter().map(|p| grid.snap(p)).collect()).collect();
-    budget.spend_crossings(&rings)?;
-    Ok(Area::filled(&rings, rule))
+impl Tracing {
+    /// For an element within `reach` of the origin, curves flattened to `tolerance`, both in m.
+    pub(super) fn new(reach: f64, tolerance: f64) -> Self {
+        Self { grid: Grid::covering(reach), tolerance, budget: Budget::of_element(), clips: HashMap::new() }
+    }
+
+    /// The grid on which all areas are.
+    pub(super) fn grid(&self) -> Grid {
+        self.grid
+    }
+
+    /// What any of the areas covers, joined where they share an edge but for a gap of at most `gap` [m].
+    pub(super) fn joined(&mut self, areas: &[Area], gap: f64) -> Result<Area, Complaint> {
+        if let [only] = areas {
+            return Ok(only.clone());
+        }
+        self.budget.spend_crossings(areas.iter().flat_map(Area::rings))?;
+        Area::joined(areas, gap, self.grid).ok_or_else(Budget::too_many_crossings)
+    }
+
+    /// What a path in metres fills; open subpaths are closed by a straight line, as SVG does.
+    fn fill(&mut self, path: &BezPath, rule: FillRule) -> Result<Area, Complaint> {
+        let lines = flatten(path, self.tolerance, &mut self.budget)?;
+        let snap = |(points, _): Polyline| points.into_iter().map(|p| self.grid.snap(p)).collect();
+        let rings: Vec<Vec<GridPoint>> = lines.into_iter().map(snap).collect();
+        self.budget.spend_crossings(rings.iter().map(Vec::as_slice))?;
+        Ok(Area::filled(&rings, rule))
+    }
+
+    /// What a clip leaves of an area.
+    fn clipped(&mut self, area: &Area, clip: &usvg::ClipPath, to_metres: Affine) -> Result<Area, Complaint> {
+        let clip = self.clip_area(clip, to_metres)?;
+        self.budget.spend_crossings(area.rings().chain(clip.rings()))?;
+        Ok(area.intersection(&clip))
+    }
+
+    /// The area that a clip leaves: what its shapes fill by their clip rules, within the clips that are on them and on it.
+    fn clip_area(&mut self, clip: &usvg::ClipPath, to_metres: Affine) -> Result<Area, Complaint> {
+        let key = (clip.id().to_owned(), to_metres.as_coeffs().map(f64::to_bits));
+        if let Some(area) = self.clips.get(&key) {
+            return Ok(area.clone());
+        }
+        let inside = Surroundings::outermost(to_metres * affine(clip.transform()));
+        let mut pieces = Vec::new();
+        collect_pieces(clip.root(), None, &inside, &mut pieces);
+        let shapes = pieces.iter().map(|piece| piece.area(self)).collect::<Result<Vec<_>, _>>()?;
+        self.budget.spend_crossings(shapes.iter().flat_map(Area::rings))?;
+        let mut area = Area::union(&shapes);
+        if let Some(outer) = clip.clip_path() {
+            area = self.clipped(&area, outer, to_metres)?;
+        }
+        self.clips.insert(key, area.clone());
+        Ok(area)
+    }
 }
 
 /// A bound on the factor by which a map stretches lengths.

@@ -14,14 +14,10 @@ const SHARE: f64 = 0.25;
 pub(super) fn part_touching_rings(shapes: &mut [Vec<Vec<Point>>], notch: f64) {
     let mut passes = HashMap::<_, usize>::new();
     shapes.iter().flatten().flatten().for_each(|p| *passes.entry(key(p)).or_default() += 1);
-    passes.retain(|_, count| *count > 1);
-    let mut radii = HashMap::new();
-    if !passes.is_empty() {
-        let rings: Vec<&Vec<Point>> = shapes.iter().flatten().collect();
-        for &p in rings.iter().copied().flatten().filter(|p| passes.contains_key(&key(p))) {
-            radii.entry(key(&p)).or_insert_with(|| notch.min(SHARE * room(p, &rings)));
-        }
-    }
+    let mut pinches: Vec<Point> = shapes.iter().flatten().flatten().filter(|p| passes[&key(p)] > 1).copied().collect();
+    pinches.sort_by(|p, q| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)));
+    pinches.dedup();
+    let radii = radii(&pinches, shapes, notch);
     shapes.iter_mut().flatten().for_each(|ring| *ring = cut_corners(ring, &radii));
 }
 
@@ -30,21 +26,27 @@ fn key(point: &Point) -> (u64, u64) {
     (point.x.to_bits(), point.y.to_bits())
 }
 
-/// Distance from `point` to the nearest corner elsewhere and to the nearest edge that does not end in it.
-fn room(point: Point, rings: &[&Vec<Point>]) -> f64 {
-    let mut room = f64::INFINITY;
-    for ring in rings {
+/// Radius of the notch at each of the `pinches`, which are sorted by x: at most `notch`, and a part of the way to the nearest
+/// corner elsewhere and to the nearest edge that does not end there.
+fn radii(pinches: &[Point], shapes: &[Vec<Vec<Point>>], notch: f64) -> HashMap<(u64, u64), f64> {
+    let reach = notch / SHARE;
+    let mut room = vec![reach; pinches.len()];
+    for ring in shapes.iter().flatten() {
         for (i, &a) in ring.iter().enumerate() {
             let b = ring[(i + 1) % ring.len()];
-            let near = match (a == point, b == point) {
-                (true, _) => b,
-                (_, true) => a,
-                _ => nearest_on_segment(a, b, point),
-            };
-            room = room.min((near - point).norm());
+            let (left, right) = (a.x.min(b.x) - reach, a.x.max(b.x) + reach);
+            let first = pinches.partition_point(|p| p.x < left);
+            for (p, room) in pinches[first..].iter().zip(&mut room[first..]).take_while(|(p, _)| p.x <= right) {
+                let near = match (a == *p, b == *p) {
+                    (true, _) => b,
+                    (_, true) => a,
+                    _ => nearest_on_segment(a, b, *p),
+                };
+                *room = room.min((near - p).norm());
+            }
         }
     }
-    room
+    pinches.iter().zip(room).map(|(p, room)| (key(p), SHARE * room)).collect()
 }
 
 /// The ring with two corners, each at the radius of the corner, in place of every corner that has one.

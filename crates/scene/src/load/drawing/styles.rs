@@ -10,6 +10,8 @@ const XLINK: &str = "http://www.w3.org/1999/xlink";
 /// The style sheets of a drawing.
 pub(super) struct Styles<'d> {
     sheet: StyleSheet<'d>,
+    /// Steps to find out which rules are for one element.
+    pub(super) steps_per_element: f64,
 }
 
 impl<'d> Styles<'d> {
@@ -18,7 +20,7 @@ impl<'d> Styles<'d> {
         let elements = document.descendants().filter(Node::is_element).count() as f64;
         let depth = document.descendants().map(|n| n.ancestors().take(64).count()).max().unwrap_or_default() as f64;
         let mut sheet = StyleSheet::new();
-        let mut steps = 0.0;
+        let mut steps_per_element = 0.0;
         for node in document.descendants().filter(|n| n.has_tag_name("style")) {
             let text = node.text().unwrap_or_default();
             for selector in text.split('{').flat_map(|part| part.rsplit('}').next().unwrap_or_default().split(',')) {
@@ -28,18 +30,16 @@ impl<'d> Styles<'d> {
                     let message = format!("a selector of a style rule has more than {MOST_SELECTOR_PARTS} parts");
                     return Err(Excess::new(node.range(), message));
                 }
-                steps += elements * depth.powi(parts.max(1) as i32 - 1);
+                steps_per_element += depth.powi(parts.max(1) as i32 - 1);
             }
-            if steps > MOST_STYLE_STEPS {
-                let message =
-                    format!("finding the elements of its style rules takes more than {MOST_STYLE_STEPS:e} steps");
-                return Err(Excess::new(node.range(), message));
+            if elements * steps_per_element > MOST_STYLE_STEPS {
+                return Err(Excess::new(node.range(), too_many_steps()));
             }
             if node.attribute("type").is_none_or(|kind| kind == "text/css") {
                 sheet.parse_more(text);
             }
         }
-        Ok(Self { sheet })
+        Ok(Self { sheet, steps_per_element })
     }
 
     /// All properties that are written for `node`, with their values; of several for one property any may win.
@@ -62,6 +62,11 @@ impl<'d> Styles<'d> {
         }
         found
     }
+}
+
+/// What is told when there are too many style rules for so many elements.
+pub(super) fn too_many_steps() -> String {
+    format!("finding the elements of its style rules takes more than {MOST_STYLE_STEPS:e} steps")
 }
 
 /// Where an element refers to as a whole.

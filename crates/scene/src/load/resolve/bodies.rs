@@ -10,7 +10,11 @@ use crate::scene::*;
 use crate::validate::{outside, overlap};
 
 impl<'d> Resolver<'d> {
-    pub(super) fn materials_and_bodies(&mut self, tolerance: f64) -> Resolved<(Vec<Material>, Vec<Body>)> {
+    pub(super) fn materials_and_bodies(
+        &mut self,
+        tolerance: f64,
+        particle_spacing: f64,
+    ) -> Resolved<(Vec<Material>, Vec<Body>)> {
         let mut materials: Vec<Material> = Vec::new();
         let mut bodies = Vec::new();
         for (i, keys) in self.document.material.iter().enumerate() {
@@ -25,7 +29,9 @@ impl<'d> Resolver<'d> {
         for (i, keys) in self.document.body.iter().enumerate() {
             let path = KeyPath::item("body", i);
             let material = self.material_index(path.then("material"), &keys.material, &mut materials)?;
-            let regions = self.regions(&path.then("shape"), &keys.shape, tolerance)?;
+            let shape = path.then("shape");
+            let regions = self.regions(&shape, &keys.shape, tolerance)?;
+            let regions = self.without_crumbs(&shape, &keys.name, regions, particle_spacing);
             self.own_names(&path, i, regions.len())?;
             let parts: Vec<usize> = (bodies.len()..bodies.len() + regions.len()).collect();
             let mut velocities = Vec::new();

@@ -2,6 +2,7 @@
 
 mod bodies;
 mod cracks;
+mod crumbs;
 mod flaws;
 mod motion;
 mod origin;
@@ -90,7 +91,7 @@ impl<'d> Resolver<'d> {
         }
         // A spacing larger than the bodies is reported by the validation; the shapes must not depend on it until then.
         let tolerance = FLATTENING * particle_spacing.min(side / 16.0);
-        let (materials, bodies) = self.materials_and_bodies(tolerance)?;
+        let (materials, bodies) = self.materials_and_bodies(tolerance, particle_spacing)?;
         let cell_size = document.grid.cell_size.unwrap_or(2.0 * particle_spacing);
         let frames = self.frames()?;
         let solver = self.solver(&materials);
