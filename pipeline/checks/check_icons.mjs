@@ -63,8 +63,10 @@ function painted(svg) {
         .replace(/<svg[^>]*>/, (tag) => tag.replace(/\s(width|height)="[^"]*"/g, ""))
         .replace(/viewBox="[^"]*"/, `viewBox="${x - w / 2} ${y - h / 2} ${2 * w} ${2 * h}"`);
     const image = new Resvg(wide, { fitTo: { mode: "width", value: PIXELS } }).render();
-    const opacity = (column, row) => image.pixels[4 * (row * image.width + column) + 3] / 255;
-    return { width: image.width, height: image.height, opacity, unit: (2 * w) / image.width };
+    // Every look at image.pixels copies all of them, and one at image.width asks the library.
+    const { width, height, pixels } = image;
+    const opacity = (column, row) => pixels[4 * (row * width + column) + 3] / 255;
+    return { width, height, opacity, unit: (2 * w) / width };
 }
 
 /** Area that is painted, in the units of the drawing. */
