@@ -99,6 +99,21 @@ impl Folder {
         written().map_err(FileError::of("write", &path))
     }
 
+    /// As [`Folder::write`], but without waiting for the disk, for what can be made again: after a power cut such a file may be
+    /// empty or hold zeros; after any other death it is whole.
+    ///
+    /// # Errors
+    /// As [`Folder::write`].
+    pub fn write_unsynced(&self, name: &str, bytes: &[u8]) -> Result<(), FileError> {
+        let path = self.place(name)?;
+        let written = || {
+            let mut draft = self.disk.draft(&self.path, name)?;
+            draft.write(bytes)?;
+            draft.publish(&path)
+        };
+        written().map_err(FileError::of("write", &path))
+    }
+
     /// As [`Folder::write`], but never over a file that is there.
     ///
     /// # Errors

@@ -6,13 +6,14 @@ use serde::Deserialize;
 /// How [`crate::Provenance::tool`] begins, whatever the version.
 pub(crate) const TOOL: &str = "fissure ";
 
-/// Whether the bytes of a mesh file say that Fissure wrote them. An empty file counts: there is nothing to lose.
+/// Whether the bytes of a mesh file say that Fissure wrote them. A file that is empty or of zeros counts, which a power cut
+/// leaves of a mesh: there is nothing to lose.
 pub(crate) fn is_ours(format: Format, bytes: &[u8]) -> bool {
     let says_so = match format {
         Format::Glb => glb_generator(bytes).is_some_and(|generator| generator.starts_with(TOOL)),
         Format::Ply => ply_comments(bytes).any(|comment| comment.starts_with(TOOL.as_bytes())),
     };
-    says_so || bytes.is_empty()
+    says_so || bytes.iter().all(|&byte| byte == 0)
 }
 
 /// `asset.generator` of a binary glTF file: magic, version, length; then length, type and text of the JSON chunk.

@@ -83,7 +83,8 @@ pub fn write_frame(
             if folder.read(&file)?.is_some_and(|there| !is_ours(format, &there)) {
                 return Err(WriteError::Foreign { path });
             }
-            folder.write(&file, &bytes)?;
+            // The take is what outlives a power cut; meshes are made of it again.
+            folder.write_unsynced(&file, &bytes)?;
             records.push(record(file, path, *part, format, meshes, objects));
         }
     }
