@@ -5,6 +5,7 @@ mod cracks;
 mod crumbs;
 mod flaws;
 mod motion;
+mod narrow_bodies;
 mod origin;
 mod selection;
 mod settings;
@@ -120,6 +121,7 @@ impl<'d> Resolver<'d> {
         self.initial_velocities(&mut scene, tolerance)?;
         // The bodies must be sound before anything is fitted into them.
         scene.validate().map_err(|fault| self.origin.in_document(fault))?;
+        self.narrow_bodies(&scene);
         self.inclusions(&mut scene, tolerance)?;
         scene.toughness = self.toughness(&scene, tolerance)?;
         self.cracks(&mut scene, tolerance)?;
