@@ -70,6 +70,8 @@ impl fmt::Display for KeyPath {
 pub struct SceneFault {
     /// The key of the scene file that holds the offending value.
     pub path: KeyPath,
+    /// Another key that it does not go together with.
+    pub other: Option<KeyPath>,
     /// What is wrong, with the offending value.
     pub message: String,
     /// What to do about it.
@@ -79,7 +81,12 @@ pub struct SceneFault {
 impl SceneFault {
     /// A fault at `path`.
     pub fn new(path: KeyPath, message: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self { path, message: message.into(), remedy: remedy.into() }
+        Self { path, other: None, message: message.into(), remedy: remedy.into() }
+    }
+
+    /// The same fault of two keys that do not go together.
+    pub fn with(self, other: KeyPath) -> Self {
+        Self { other: Some(other), ..self }
     }
 }
 

@@ -155,14 +155,14 @@ type Mistake = (String, &'static str, LoadErrorKind, Option<usize>, &'static [&'
 
 #[test]
 fn every_mistake_is_told_with_line_value_and_remedy() {
-    use LoadErrorKind::{InputFile, Scene};
+    use LoadErrorKind::Scene;
     let body = "[[body]]\nname = 'a'\nmaterial = 'pmma'\n";
     let plate = |rest: &str| format!("{PLATE}{rest}");
     let own = |rest: &str| format!("{body}{rest}");
     let guide = |line: &str| format!("{PLATE}{LINE}guide = 'path'\n[[guide]]\nname = 'path'\nline = {line}\n");
     #[rustfmt::skip]
     let cases: Vec<Mistake> = vec![
-        ("[[body]\n".into(), "", InputFile, Some(1), &["TOML"]),
+        ("[[body]\n".into(), "", Scene, Some(1), &["TOML"]),
         (plate("[solver]\npresett = 'thesis'\n"), "", Scene, Some(6), &["unknown key `presett`", "`solver`", "did you mean `preset`?"]),
         (plate("[solver]\npreset = 'thesiss'\n"), "", Scene, Some(6), &["thesiss", "did you mean `thesis`?"]),
         (plate(""), "solver.presett=thesis", Scene, Some(1), &["unknown key `presett`", "did you mean `preset`?", "--set"]),

@@ -9,9 +9,9 @@ use std::path::Path;
 /// What kind of mistake it is; decides the exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LoadErrorKind {
-    /// The scene asks for something that does not exist or cannot be (exit code 2).
+    /// The scene file is not valid TOML, or asks for something that does not exist or cannot be (exit code 2).
     Scene,
-    /// A file is missing, unreadable or malformed (exit code 3).
+    /// A file is missing or unreadable, or a drawing, font or image is malformed (exit code 3).
     InputFile,
 }
 
@@ -27,6 +27,8 @@ pub struct LoadError {
     pub source_text: Option<String>,
     /// Bytes of `source_text` that are meant.
     pub span: Option<Range<usize>>,
+    /// Bytes of `source_text` that these do not go together with.
+    pub other: Option<Range<usize>>,
     /// What is wrong, with the offending value.
     pub message: String,
     /// What to do about it.
@@ -55,6 +57,7 @@ impl LoadError {
             path: path.into(),
             source_text: None,
             span: None,
+            other: None,
             message: message.into(),
             remedy: remedy.into(),
         }
@@ -74,11 +77,13 @@ impl LoadError {
     /// A fault of the scene, shown where its key is written: in the file, or in the override that set it.
     pub(crate) fn fault(source: &SceneSource, fault: SceneFault) -> Self {
         let place = source.locate(&fault.path);
+        let other = fault.other.map(|path| source.locate(&path)).filter(|other| other.path == place.path);
         Self {
             kind: LoadErrorKind::Scene,
             path: place.path.into(),
             source_text: Some(place.text),
             span: place.span,
+            other: other.and_then(|other| other.span),
             message: fault.message,
             remedy: fault.remedy,
         }

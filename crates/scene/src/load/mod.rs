@@ -3,6 +3,7 @@
 mod along;
 mod drawing;
 mod error;
+mod explain;
 mod loaded;
 mod overrides;
 mod picture;

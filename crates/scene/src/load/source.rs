@@ -1,10 +1,11 @@
 //! A scene file as text, its overrides, and where each key is written.
 
-use super::error::{LoadError, SCENE_FILE};
+use super::error::{LoadError, LoadErrorKind, SCENE_FILE};
+use super::explain::explain;
 use super::overrides::Override;
 use super::place::Place;
 use crate::document::Document;
-use crate::fault::{Key, KeyPath, SceneFault, nearest};
+use crate::fault::{Key, KeyPath, SceneFault};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use toml::de::{DeTable, DeValue};
@@ -22,13 +23,10 @@ impl SceneSource {
     pub(crate) fn read(path: &Path, overrides: &[String]) -> Result<(Self, Document), LoadError> {
         let text = SCENE_FILE.read_text(path)?;
         let malformed = |e: toml::de::Error| {
-            LoadError::malformed(
-                path,
-                &text,
-                e.span(),
-                format!("not valid TOML: {}", e.message()),
-                "correct the syntax",
-            )
+            let message = format!("not valid TOML: {}", e.message());
+            let malformed = LoadError::malformed(path, &text, e.span(), message, "correct the syntax");
+            // The file could be read; it is the scene that is wrong.
+            LoadError { kind: LoadErrorKind::Scene, ..malformed }
         };
         let mut table: toml::Table = toml::from_str(&text).map_err(malformed)?;
         let mut applied = Vec::new();
@@ -56,9 +54,17 @@ impl SceneSource {
                     })
                     .collect(),
             );
-            let (message, remedy) = explain(error.inner().message(), &mut path);
+            let (message, remedy) = explain(error.inner().message(), &mut path, &self.written());
             LoadError::fault(self, SceneFault::new(path, message, remedy))
         })
+    }
+
+    /// Everything that is written, overrides included, for messages: parsed anew, so that a sound scene does not keep it twice.
+    fn written(&self) -> toml::Value {
+        let mut table: toml::Table = toml::from_str(&self.text).unwrap_or_default();
+        // They went in without complaint before.
+        self.overrides.iter().for_each(|(_, set)| drop(set.apply(&mut table)));
+        toml::Value::Table(table)
     }
 
     /// Where `path` is written: file or override, its text, and the bytes meant. The deepest part that is written counts.
@@ -105,33 +111,8 @@ fn set_error(argument: &str, message: String, remedy: String) -> LoadError {
         path: PathBuf::from(format!("--set {argument}")).into(),
         source_text: Some(argument.into()),
         span: Some(0..argument.len()),
+        other: None,
         message,
         remedy,
     }
-}
-
-/// Turns serde's message into ours; for an unknown key `path` gets to point at it.
-fn explain(message: &str, path: &mut KeyPath) -> (String, String) {
-    let message = message.trim();
-    let mut quoted = message.split('`').skip(1).step_by(2);
-    if message.starts_with("unknown field") {
-        let unknown = quoted.next().unwrap_or_default().to_owned();
-        let known: Vec<_> = quoted.collect();
-        if path.0.last() != Some(&Key::Name(unknown.clone())) {
-            path.0.push(Key::Name(unknown.clone()));
-        }
-        let owner = KeyPath(path.0[..path.0.len() - 1].to_vec()).to_string();
-        let whose = if owner.is_empty() { "of a scene".to_owned() } else { format!("of `{owner}`") };
-        return (format!("unknown key `{unknown}` {whose}"), nearest(&unknown, &known));
-    }
-    if message.starts_with("unknown variant") {
-        let unknown = quoted.next().unwrap_or_default().to_owned();
-        let known: Vec<_> = quoted.collect();
-        return (format!("`{path}` cannot be `{unknown}`"), nearest(&unknown, &known));
-    }
-    if message.starts_with("missing field") {
-        let missing = quoted.next().unwrap_or_default();
-        return (format!("`{path}` lacks the key `{missing}`"), format!("add `{missing} = ...`"));
-    }
-    (format!("`{path}`: {message}"), "see `fissure schema` for what each key holds".into())
 }

@@ -42,6 +42,6 @@ impl Origin {
 
     /// A fault with its path counted as in the document.
     pub(super) fn in_document(&self, fault: SceneFault) -> SceneFault {
-        SceneFault { path: self.in_file(fault.path), ..fault }
+        SceneFault { path: self.in_file(fault.path), other: fault.other.map(|path| self.in_file(path)), ..fault }
     }
 }

@@ -3,7 +3,7 @@
 use super::Resolver;
 use crate::fault::{KeyPath, Warning, short};
 use crate::geometry::polyline_length;
-use crate::scene::{Crack, Scene};
+use crate::scene::{Crack, Guide, Scene};
 
 /// Cells along a crack, at least: the integrals around a tip reach four cells far, and further back the crack has to be there as well.
 const FEWEST_CELLS: f64 = 8.0;
@@ -13,7 +13,12 @@ impl Resolver<'_> {
     pub(super) fn short_cracks(&self, scene: &Scene) {
         let drawn = self.origin.cracks.len();
         let cells = |crack: &Crack| polyline_length(&crack.points) / scene.cell_size;
-        let is_short = |crack: &&Crack| (crack.start_live || crack.end_live) && cells(crack) < FEWEST_CELLS;
+        // A schedule moves a tip whatever is measured at it.
+        let measured =
+            |live: bool, guide: &Option<Guide>| live && guide.as_ref().is_none_or(|g| g.schedule.points.is_empty());
+        let is_measured = |c: &Crack| measured(c.start_live, &c.start_guide) || measured(c.end_live, &c.end_guide);
+        // A crack of exactly so many cells is not short for being flattened.
+        let is_short = |crack: &&Crack| is_measured(crack) && cells(crack) < 0.999 * FEWEST_CELLS;
         let remedy = |cells: f64| {
             let spacing = scene.particle_spacing * cells / FEWEST_CELLS;
             format!("make it longer, or set `grid.particle_spacing` to {} m or less", short(spacing))
