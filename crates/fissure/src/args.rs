@@ -73,7 +73,7 @@ pub(crate) struct NewArguments {
 /// The scene and what overrides it.
 #[derive(Debug, Args)]
 pub(crate) struct SceneArguments {
-    /// The scene file.
+    /// The scene file, or the folder it is in.
     pub(crate) scene: PathBuf,
     /// Override one key of the scene file; may be repeated. The value is TOML; a bare word is a string.
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -150,7 +150,7 @@ pub(crate) struct SimArguments {
 /// Arguments of `post`.
 #[derive(Debug, Args)]
 pub(crate) struct PostArguments {
-    /// The take: a folder ending in `.take`.
+    /// The take, a folder ending in `.take`, or the folder that holds it.
     pub(crate) take: PathBuf,
     #[command(flatten)]
     pub(crate) mesh: MeshArguments,

@@ -21,7 +21,7 @@ impl Caution {
     /// `warning`, which is about `place`.
     pub(crate) fn new(warning: &Warning, place: Place) -> Self {
         let source = NamedSource::new(place.path.display().to_string(), place.text);
-        let snippet = place.span.map(|span| Snippet { source, span });
+        let snippet = place.span.map(|span| Snippet { source, span, other: None });
         Self { message: warning.message.clone(), remedy: warning.remedy.clone(), snippet }
     }
 }
@@ -40,7 +40,6 @@ impl Diagnostic for Caution {
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let span = self.snippet.as_ref()?.span.clone();
-        Some(Box::new(std::iter::once(LabeledSpan::new_with_span(None, span))))
+        Some(self.snippet.as_ref()?.labels())
     }
 }

@@ -2,8 +2,10 @@
 
 use crate::exit::Exit;
 use fissure_files::FileError;
+use fissure_scene::KeyPath;
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
 use std::fmt::Display;
+use std::ops::Range;
 
 /// An error as the user sees it.
 #[derive(Debug, thiserror::Error)]
@@ -17,6 +19,8 @@ pub(crate) struct Failure {
     pub(crate) remedy: Option<String>,
     /// Where in a text file.
     pub(crate) snippet: Option<Box<Snippet>>,
+    /// Keys of the scene that are the cause, counted as in the scene; [`SceneFile::show`](crate::scene_file::SceneFile::show) makes a snippet of them.
+    pub(crate) keys: Vec<KeyPath>,
 }
 
 /// A place in a text file.
@@ -24,13 +28,29 @@ pub(crate) struct Failure {
 pub(crate) struct Snippet {
     pub(crate) source: NamedSource<String>,
     /// Bytes of the source.
-    pub(crate) span: std::ops::Range<usize>,
+    pub(crate) span: Range<usize>,
+    /// Bytes of the source that these do not go together with.
+    pub(crate) other: Option<Range<usize>>,
+}
+
+impl Snippet {
+    /// All bytes that are meant, as labels.
+    pub(crate) fn labels(&self) -> Box<dyn Iterator<Item = LabeledSpan> + '_> {
+        let spans = std::iter::once(&self.span).chain(&self.other);
+        Box::new(spans.map(|span| LabeledSpan::new_with_span(None, span.clone())))
+    }
 }
 
 impl Failure {
     /// A failure without a place in a file.
     pub(crate) fn new(exit: Exit, message: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self { exit, message: message.into(), remedy: Some(remedy.into()), snippet: None }
+        let message: String = message.into();
+        Self { remedy: Some(remedy.into()), ..Self::of(exit, message) }
+    }
+
+    /// A failure whose message names its remedy.
+    pub(crate) fn of(exit: Exit, message: impl ToString) -> Self {
+        Self { exit, message: message.to_string(), remedy: None, snippet: None, keys: Vec::new() }
     }
 
     /// The same failure, said of a larger task.
@@ -56,7 +76,6 @@ impl Diagnostic for Failure {
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let span = self.snippet.as_ref()?.span.clone();
-        Some(Box::new(std::iter::once(LabeledSpan::new_with_span(None, span))))
+        Some(self.snippet.as_ref()?.labels())
     }
 }

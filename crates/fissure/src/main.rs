@@ -10,6 +10,7 @@ mod frame_set;
 mod interrupt;
 mod invocation;
 mod meshes;
+mod moved;
 mod new;
 mod post;
 mod progress;

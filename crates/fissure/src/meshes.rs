@@ -107,7 +107,7 @@ impl From<PostError> for Failure {
             PostError::Inconsistent { .. } => Exit::File,
             _ => Exit::Numerical,
         };
-        Self { exit, message: error.to_string(), remedy: None, snippet: None }
+        Self::of(exit, error)
     }
 }
 

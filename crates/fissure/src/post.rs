@@ -12,13 +12,14 @@ use crate::threads;
 use crate::workers::{Work, stream};
 use fissure_files::{Folder, Lock};
 use fissure_scene::Take;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 /// Writes the meshes of a take.
 pub(crate) fn post(arguments: &PostArguments, interrupt: &Interrupt, report: &Report) -> Result<Exit, Failure> {
     let threads = threads::set(arguments.threads)?;
-    let take = Take::open(&arguments.take)?;
+    let path = take_in(&arguments.take)?;
+    let take = Take::open(&path)?;
     let held = take.frame_numbers();
     let (Some(&first), Some(&last)) = (held.first(), held.last()) else {
         return Err(Failure::new(
@@ -35,9 +36,7 @@ pub(crate) fn post(arguments: &PostArguments, interrupt: &Interrupt, report: &Re
     take.remarks()?.iter().for_each(|remark| report.warn(&remark.to_string()));
     let folder = match &arguments.output {
         Some(folder) => folder.clone(),
-        None => {
-            arguments.take.canonicalize().ok().and_then(|path| path.parent().map(Path::to_owned)).unwrap_or_default()
-        }
+        None => path.canonicalize().ok().and_then(|path| path.parent().map(Path::to_owned)).unwrap_or_default(),
     };
     let folder = Folder::new(folder);
     folder.make()?;
@@ -63,4 +62,25 @@ pub(crate) fn post(arguments: &PostArguments, interrupt: &Interrupt, report: &Re
     }
     report.note(&format!("wrote the meshes of {} frames into `{}`", numbers.len(), folder.path().display()));
     Ok(Exit::Done)
+}
+
+/// The take meant by `path`: itself, or the one in a folder of meshes.
+fn take_in(path: &Path) -> Result<PathBuf, Failure> {
+    let is_take = |path: &Path| path.extension().is_some_and(|extension| extension == "take") && path.is_dir();
+    let Ok(entries) = std::fs::read_dir(path) else { return Ok(path.to_owned()) };
+    if is_take(path) {
+        return Ok(path.to_owned());
+    }
+    let mut takes: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).filter(|p| is_take(p)).collect();
+    takes.sort();
+    match takes.as_slice() {
+        // Whatever it is called, it may be a take.
+        [] => Ok(path.to_owned()),
+        [only] => Ok(only.clone()),
+        several => {
+            let names: Vec<String> = several.iter().take(6).map(|take| format!("`{}`", take.display())).collect();
+            let message = format!("the folder `{}` holds {} takes", path.display(), several.len());
+            Err(Failure::new(Exit::Usage, message, format!("name one of them: {}", names.join(", "))))
+        }
+    }
 }

@@ -52,12 +52,16 @@ struct LinePlace<'a> {
     file: &'a str,
     line: usize,
     column: usize,
+    /// Line of the other key, where two do not go together.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    other_line: Option<usize>,
 }
 
 impl<'a> LinePlace<'a> {
     fn of(snippet: &'a Snippet) -> Self {
-        let (line, column) = line_and_column(snippet);
-        Self { file: snippet.source.name(), line, column }
+        let (line, column) = line_and_column(snippet, snippet.span.start);
+        let other_line = snippet.other.as_ref().map(|span| line_and_column(snippet, span.start).0);
+        Self { file: snippet.source.name(), line, column, other_line }
     }
 }
 
@@ -177,9 +181,9 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Line and column of a snippet, both from 1.
-fn line_and_column(snippet: &Snippet) -> (usize, usize) {
-    let span = (snippet.span.start, 0).into();
+/// Line and column of a byte of a snippet's source, both from 1.
+fn line_and_column(snippet: &Snippet, byte: usize) -> (usize, usize) {
+    let span = (byte, 0).into();
     match snippet.source.read_span(&span, 0, 0) {
         Ok(contents) => (contents.line() + 1, contents.column() + 1),
         Err(_) => (1, 1),

@@ -16,15 +16,17 @@ use fissure_scene::Take;
 /// Simulates a scene and writes its meshes while the solver goes on.
 pub(crate) fn run(arguments: &RunArguments, interrupt: &Interrupt, report: &Report) -> Result<Exit, Failure> {
     let threads = threads::set(arguments.take.threads)?;
-    let scene = scene_file::read(&arguments.scene, report)?;
-    let folder = OutputFolder::of(&scene, &arguments.take);
+    let file = scene_file::read(&arguments.scene, report)?;
+    let scene = file.scene();
+    let folder = OutputFolder::of(scene, &arguments.take);
     // Told before anything is computed.
     Manifest::read(&folder.root, &scene.name, &scene.hash)?;
     let wanted = |number: i64| arguments.frames.as_ref().is_none_or(|frames| frames.contains(number));
-    let solve = solve::open(&scene, &folder, &arguments.take, arguments.frames.as_ref(), report)?;
+    let solve = solve::open(scene, &folder, &arguments.take, arguments.frames.as_ref(), report)
+        .map_err(|failure| file.show(failure))?;
     let _lock = folder.lock_meshes()?;
     folder.root.remove_drafts()?;
-    let mesher = Mesher::new(&scene, &folder.root, &arguments.mesh, report)?;
+    let mesher = Mesher::new(scene, &folder.root, &arguments.mesh, report)?;
     // Frames of an earlier run: their meshes may be missing or be of other options.
     let take = Take::read(&folder.take)?;
     let earlier = solve.as_ref().map_or(i64::MAX, |solve| solve.first_new_frame()).min(scene.frames.last + 1);

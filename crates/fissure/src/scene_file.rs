@@ -5,16 +5,40 @@ use crate::caution::Caution;
 use crate::exit::Exit;
 use crate::failure::{Failure, Snippet};
 use crate::report::Report;
-use fissure_scene::{LoadError, LoadErrorKind, Scene};
+use fissure_scene::{LoadError, LoadErrorKind, Loaded, Scene};
 use fissure_sim::SimulationError;
 use miette::NamedSource;
+use std::path::{Path, PathBuf};
+
+/// A scene with the file it comes from.
+#[derive(Debug)]
+pub(crate) struct SceneFile(Loaded);
+
+impl SceneFile {
+    /// The scene.
+    pub(crate) fn scene(&self) -> &Scene {
+        &self.0.scene
+    }
+
+    /// The same failure, with the lines of the file that are its cause.
+    pub(crate) fn show(&self, failure: Failure) -> Failure {
+        let mut places = failure.keys.iter().map(|key| self.0.place(&self.0.in_file(key.clone())));
+        let Some(place) = places.next() else { return failure };
+        let Some(span) = place.span else { return failure };
+        let other = places.next().filter(|other| other.path == place.path).and_then(|other| other.span);
+        let source = NamedSource::new(place.path.display().to_string(), place.text);
+        Failure { snippet: Some(Box::new(Snippet { source, span, other })), ..failure }
+    }
+}
 
 /// Reads and validates a scene, and says what will hardly go well with it.
 ///
 /// # Errors
 /// When the scene cannot be simulated, or something will hardly go well and the user wants that to count.
-pub(crate) fn read(arguments: &SceneArguments, report: &Report) -> Result<Scene, Failure> {
-    let loaded = fissure_scene::load_with_warnings(&arguments.scene, &arguments.overrides)?;
+pub(crate) fn read(arguments: &SceneArguments, report: &Report) -> Result<SceneFile, Failure> {
+    let mut loaded = fissure_scene::load_with_warnings(&scene_in(&arguments.scene)?, &arguments.overrides)?;
+    let foreseen = fissure_sim::warnings(&loaded.scene);
+    loaded.warn(foreseen);
     for warning in &loaded.warnings {
         report.warn_about(&Caution::new(warning, loaded.place(&warning.path)));
     }
@@ -24,7 +48,39 @@ pub(crate) fn read(arguments: &SceneArguments, report: &Report) -> Result<Scene,
             format!("{count} {}, and --strict does not let them pass", if count == 1 { "warning" } else { "warnings" }),
             "mend what is named above, or leave --strict out",
         )),
-        _ => Ok(loaded.scene),
+        _ => Ok(SceneFile(loaded)),
+    }
+}
+
+/// The scene file meant by `path`: itself, or the scene in a folder.
+fn scene_in(path: &Path) -> Result<PathBuf, Failure> {
+    if !path.is_dir() {
+        return Ok(path.to_owned());
+    }
+    let usual = path.join("scene.toml");
+    if usual.is_file() {
+        return Ok(usual);
+    }
+    let entries = std::fs::read_dir(path).map_err(|error| {
+        let message = format!("cannot read the folder `{}`: {error}", path.display());
+        Failure::new(Exit::File, message, "check its permissions, or name the scene file itself")
+    })?;
+    let is_scene = |file: &PathBuf| file.extension().is_some_and(|e| e == "toml") && file.is_file();
+    let mut scenes: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).filter(is_scene).collect();
+    scenes.sort();
+    let name = |file: &PathBuf| format!("`{}`", file.display());
+    match scenes.as_slice() {
+        [only] => Ok(only.clone()),
+        [] => Err(Failure::new(
+            Exit::File,
+            format!("there is no scene in the folder `{}`", path.display()),
+            "name a scene file, or write one to start from with `fissure new`",
+        )),
+        several => Err(Failure::new(
+            Exit::Usage,
+            format!("the folder `{}` has {} scenes and no `scene.toml`", path.display(), several.len()),
+            format!("name one of them: {}", several.iter().take(6).map(name).collect::<Vec<_>>().join(", ")),
+        )),
     }
 }
 
@@ -36,12 +92,10 @@ impl From<LoadError> for Failure {
         };
         let place = error.path.display().to_string();
         match (error.source_text, error.span) {
-            (Some(text), Some(span)) => Self {
-                exit,
-                message: error.message,
-                remedy: Some(error.remedy),
-                snippet: Some(Box::new(Snippet { source: NamedSource::new(place, text), span })),
-            },
+            (Some(text), Some(span)) => {
+                let snippet = Snippet { source: NamedSource::new(place, text), span, other: error.other };
+                Self { snippet: Some(Box::new(snippet)), ..Self::new(exit, error.message, error.remedy) }
+            }
             _ => Self::new(exit, format!("{place}: {}", error.message), error.remedy),
         }
     }
@@ -53,7 +107,11 @@ impl From<SimulationError> for Failure {
             SimulationError::Unstable { .. } | SimulationError::OutOfRange { .. } => Exit::Numerical,
             _ => Exit::Usage,
         };
-        // These messages name their remedy.
-        Self { exit, message: error.to_string(), remedy: None, snippet: None }
+        let keys = error.keys();
+        match error {
+            SimulationError::Scene(fault) => Self { keys, ..Self::new(exit, fault.message, fault.remedy) },
+            // The other messages name their remedy.
+            _ => Self { keys, ..Self::of(exit, error) },
+        }
     }
 }

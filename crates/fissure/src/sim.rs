@@ -12,9 +12,11 @@ use crate::{scene_file, threads};
 /// Simulates a scene into a take.
 pub(crate) fn sim(arguments: &SimArguments, interrupt: &Interrupt, report: &Report) -> Result<Exit, Failure> {
     threads::set(arguments.take.threads)?;
-    let scene = scene_file::read(&arguments.scene, report)?;
-    let folder = OutputFolder::of(&scene, &arguments.take);
-    let Some(solve) = solve::open(&scene, &folder, &arguments.take, arguments.frames.as_ref(), report)? else {
+    let file = scene_file::read(&arguments.scene, report)?;
+    let folder = OutputFolder::of(file.scene(), &arguments.take);
+    let solve = solve::open(file.scene(), &folder, &arguments.take, arguments.frames.as_ref(), report)
+        .map_err(|failure| file.show(failure))?;
+    let Some(solve) = solve else {
         return Ok(Exit::Done);
     };
     let outcome = solve.run(interrupt, report, &mut |_| ())?;

@@ -7,6 +7,7 @@ use crate::folder::OutputFolder;
 use crate::frame_set::FrameSet;
 use crate::interrupt::Interrupt;
 use crate::invocation;
+use crate::moved::Moved;
 use crate::progress::SimulationProgress;
 use crate::report::Report;
 use fissure_files::{Lock, LockError};
@@ -152,6 +153,7 @@ impl Solve {
         }
         let mut state_written = Instant::now();
         let mut formulation = self.simulation.formulation();
+        let mut moved = Moved::default();
         while self.newest < self.last {
             let mut watch = |now: &fissure_sim::Progress| {
                 progress.step(self.newest + 1, now);
@@ -180,7 +182,12 @@ impl Solve {
             }
             self.newest = frame.number;
             progress.frame(frame.number, &frame.tips);
+            moved.frame(&frame.tips);
             hand_on(frame);
+        }
+        drop(progress);
+        if let Some(verdict) = moved.verdict(self.simulation.scene()).filter(|_| self.simulation.is_finished()) {
+            report.warn(&verdict);
         }
         Ok(Outcome::Complete)
     }

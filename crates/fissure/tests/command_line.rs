@@ -218,7 +218,10 @@ fn verify_prints_what_a_case_found_beside_what_it_should() {
 #[test]
 fn quiet_says_nothing_when_all_is_well() {
     let folder = workplace();
-    let output = run(folder.path(), &["run", "plate.toml", "--quiet"]);
+    let output = run(
+        folder.path(),
+        &["run", "plate.toml", "--quiet", "--set", "grid.particle_spacing=0.375", "--frames", "1-3"],
+    );
     assert_eq!(expect(&output, 0), "");
 }
 

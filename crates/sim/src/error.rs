@@ -1,5 +1,7 @@
 //! What can go wrong in a simulation.
 
+use fissure_scene::{KeyPath, SceneFault};
+
 /// Why a simulation cannot start or go on.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -14,14 +16,9 @@ pub enum SimulationError {
         /// Largest stable step [s].
         limit: f64,
     },
-    /// No particle fits into a body.
-    #[error("body `{body}` holds no particle at a spacing of {spacing} m; make `grid.particle_spacing` smaller")]
-    NoParticles {
-        /// Name of the body.
-        body: String,
-        /// Particle spacing [m].
-        spacing: f64,
-    },
+    /// Something in the scene that shows when particles are laid. Paths count items as in the scene.
+    #[error("{}; {}", .0.message, .0.remedy)]
+    Scene(SceneFault),
     /// More memory than the machine has would be needed.
     #[error(
         "{particles} particles need about {needed} MiB, more than the {available} MiB that are free; make `grid.particle_spacing` larger{}",
@@ -47,12 +44,6 @@ pub enum SimulationError {
         width: f64,
         /// Distance between nodes [m].
         cell_size: f64,
-    },
-    /// A selection meets no particle.
-    #[error("{what} selects no particle; check its shape against the bodies")]
-    EmptySelection {
-        /// Which load or support.
-        what: String,
     },
     /// The simulation became unstable or left the range of the method.
     #[error("the simulation failed at t = {time:e} s near ({x}, {y}) m: {cause}")]
@@ -84,4 +75,22 @@ pub enum SimulationError {
     /// A saved state does not belong to this scene or version.
     #[error("the saved state cannot be used: {0}")]
     BadState(String),
+}
+
+impl SimulationError {
+    /// The key of the scene that is the cause, and another that it does not go together with. Paths count items as in the scene.
+    pub fn keys(&self) -> Vec<KeyPath> {
+        match self {
+            Self::Scene(fault) => std::iter::once(&fault.path).chain(&fault.other).cloned().collect(),
+            Self::TimeStepTooLarge { .. } => vec![KeyPath::setting("solver", "time_step")],
+            Self::TooManyParticles { .. } => vec![KeyPath::setting("grid", "particle_spacing")],
+            _ => Vec::new(),
+        }
+    }
+}
+
+impl From<SceneFault> for SimulationError {
+    fn from(fault: SceneFault) -> Self {
+        Self::Scene(fault)
+    }
 }

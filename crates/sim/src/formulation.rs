@@ -52,19 +52,13 @@ pub(crate) fn settle(scene: &Scene, used: Formulation) -> Scene {
 }
 
 /// Strain that loads and impacts will cause, roughly: traction over modulus, speed over wave speed.
-fn expected_strain(scene: &Scene, elastic: &[Elastic]) -> f64 {
+pub(crate) fn expected_strain(scene: &Scene, elastic: &[Elastic]) -> f64 {
     let softest = elastic.iter().map(|e| e.young_modulus).fold(f64::INFINITY, f64::min);
     let slowest = elastic.iter().map(Elastic::dilatational_wave_speed).fold(f64::INFINITY, f64::min);
     let mut size = 0.0_f64;
-    let mut speed = 0.0_f64;
     for body in &scene.bodies {
         let (low, high) = body.region.bounds();
-        let extent = (high - low).norm();
-        size = size.max(extent);
-        // Spinning alone strains little; what counts is the speed at which things can meet.
-        for v in &body.velocities {
-            speed = speed.max(v.velocity.norm());
-        }
+        size = size.max((high - low).norm());
     }
     let mut strain = 0.0_f64;
     for load in &scene.loads {
@@ -76,6 +70,16 @@ fn expected_strain(scene: &Scene, elastic: &[Elastic]) -> f64 {
             LoadKind::PerPoint(values) => values.iter().map(|v| v.1.norm()).sum::<f64>() / size,
         };
         strain = strain.max(stress * factor / softest);
+    }
+    strain.max(impact_speed(scene) / slowest)
+}
+
+/// Speed at which things are moved or can meet [m/s], roughly.
+pub(crate) fn impact_speed(scene: &Scene) -> f64 {
+    let mut speed = 0.0_f64;
+    // Spinning alone strains little; what counts is the speed at which things can meet.
+    for v in scene.bodies.iter().flat_map(|body| &body.velocities) {
+        speed = speed.max(v.velocity.norm());
     }
     for support in &scene.supports {
         let most = support.curve.points.iter().map(|p| p.1.abs()).fold(0.0, f64::max);
@@ -97,7 +101,7 @@ fn expected_strain(scene: &Scene, elastic: &[Elastic]) -> f64 {
         let (low, high) = bounds(&all);
         speed += (2.0 * g * (high - low).norm()).sqrt();
     }
-    strain.max(speed / slowest)
+    speed
 }
 
 /// Builds the solver.

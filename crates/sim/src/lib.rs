@@ -12,6 +12,7 @@ mod domain;
 mod elastic;
 mod error;
 mod fields;
+mod foresight;
 mod formulation;
 mod grid;
 mod growth;
@@ -41,6 +42,7 @@ pub use constitutive::{
 };
 pub use elastic::Elastic;
 pub use error::SimulationError;
+pub use foresight::warnings;
 pub use simulation::{Estimate, Progress, Simulation};
 pub use stress_intensity::{StressIntensity, crack_speed_factors, universal_function};
 pub use williams::{TipField, moving_tip_fields, williams_fields};

@@ -4,7 +4,7 @@ use crate::SimulationError;
 use crate::scan::Places;
 use crate::selector::Selector;
 use crate::spans::{Span, SpanRows};
-use fissure_scene::{Point, Region, Scene, Selection, Vector, bounds};
+use fissure_scene::{KeyPath, Point, Region, Scene, SceneFault, Selection, Vector, bounds};
 use std::ops::Range;
 
 /// The particles of all bodies at rest, in the order body, row, column. Shape: one entry per particle in every list.
@@ -56,7 +56,10 @@ impl Particles {
             let before = runs.len();
             places.for_each_run_inside(&body.region, |row, columns| runs.push((index, row, columns)));
             if runs.len() == before {
-                return Err(SimulationError::NoParticles { body: body.name.clone(), spacing: s });
+                let message = format!("body `{}` holds no particle at a spacing of {s} m", body.name);
+                let (path, remedy) =
+                    (KeyPath::item("body", index).then("shape"), "make `grid.particle_spacing` smaller");
+                return Err(SceneFault::new(path, message, remedy).into());
             }
         }
         let mut particles = Self::with_room(low, s, runs.iter().map(|(_, _, columns)| columns.len()).sum());
@@ -138,6 +141,36 @@ impl Particles {
         }
         motions
     }
+
+    /// The fault of the selection of item `index` of `array`, a load or a support, that meets no particle.
+    pub(crate) fn no_particle(&self, array: &str, index: usize, selection: &Selection) -> SceneFault {
+        let path = KeyPath::item(array, index).then("select");
+        let distance = |to: &dyn Fn(Point) -> f64| self.rest.iter().map(|&p| to(p)).fold(f64::INFINITY, f64::min);
+        let (why, remedy) = match selection {
+            Selection::Near { points, radius } => {
+                let off = distance(&|p| points.iter().map(|q| (p - q).norm()).fold(f64::INFINITY, f64::min));
+                let why =
+                    format!("the nearest is {off:.3e} m away from its points, more than its radius of {radius} m");
+                (why, format!("move the points, or make `radius` at least {} m", round_up(1.5 * off)))
+            }
+            Selection::Region(region) => {
+                let off = distance(&|p| distance_to_rings(region, p));
+                (
+                    format!("the nearest is {off:.3e} m away from its region"),
+                    "move the region onto a body, or make it larger".into(),
+                )
+            }
+            Selection::Edge { side, .. } => {
+                let side = format!("{side:?}").to_lowercase();
+                let why = format!("no piece of an outline lies along the {side} side of the bodies' box");
+                (why, "select a `region` or points `near` the place instead".into())
+            }
+            Selection::All | Selection::Bodies(_) | Selection::Outline(_) => {
+                ("there is none in it or along it".into(), "check it against the bodies".into())
+            }
+        };
+        SceneFault::new(path, format!("{array} {} selects no particle: {why}", index + 1), remedy)
+    }
 }
 
 /// How a particle moves at time zero.
@@ -172,6 +205,13 @@ fn lattice_of(place: &[[i32; 2]]) -> SpanRows {
         }
     }
     lattice
+}
+
+/// The next number with two digits.
+fn round_up(value: f64) -> f64 {
+    let unit = 10_f64.powf(value.log10().floor() - 1.0);
+    let rounded = (value / unit).ceil() * unit;
+    format!("{rounded:.1e}").parse().unwrap_or(rounded)
 }
 
 /// Distance from `point` to the nearest ring of `region` [m].

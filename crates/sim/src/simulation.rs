@@ -5,12 +5,15 @@ use crate::elastic::Elastic;
 use crate::formulation::{self, Choice};
 use crate::particles::Particles;
 use crate::solver::Solver;
-use crate::{SimulationError, memory, pieces, saved};
+use crate::{SimulationError, foresight, memory, pieces, saved};
 use fissure_scene::{Energies, Formulation, Frame, Pose, Scene, TipRecord, Vector};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
+
+pub use estimate::Estimate;
 use std::sync::Arc;
 
+mod estimate;
 #[cfg(test)]
 mod far_apart;
 mod growing;
@@ -56,27 +59,6 @@ struct Saved {
     formulation: Formulation,
     state: State,
     solver: Vec<u8>,
-}
-
-/// What a scene will cost, known before it runs.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Estimate {
-    /// Number of particles.
-    pub particles: usize,
-    /// Number of grid cells that hold material.
-    pub cells: usize,
-    /// Time step [s].
-    pub time_step: f64,
-    /// Largest stable time step [s].
-    pub stable_time_step: f64,
-    /// Number of steps for all frames.
-    pub steps: u64,
-    /// Name of the formulation and the reason for it.
-    pub formulation: String,
-    /// Memory a run takes at most, frames on their way to disk and meshes included [bytes].
-    pub memory: u64,
-    /// Wall time expected on this machine [s], from a few steps timed here.
-    pub seconds: f64,
 }
 
 /// How far a simulation is.
@@ -126,6 +108,7 @@ impl Simulation {
         let scene = &formulation::settle(scene, formulation);
         memory::check(scene, formulation)?;
         let particles = Arc::new(Particles::fill(scene)?);
+        foresight::check_layout(scene, &particles)?;
         let solver = formulation::build(formulation, scene, particles.clone(), &cracks)?;
         let mut simulation = Self {
             scene: scene.clone(),
@@ -199,6 +182,17 @@ impl Simulation {
         })
     }
 
+    /// The error of a run that has failed, with its cause where it is known: material that is strained beyond measure fails at any step.
+    fn name_cause(&self, error: SimulationError) -> SimulationError {
+        match (error, foresight::overload(&self.scene, &self.elastic)) {
+            (
+                SimulationError::Unstable { time, x, y, .. } | SimulationError::OutOfRange { time, x, y, .. },
+                Some(cause),
+            ) => SimulationError::Unstable { time, x, y, cause },
+            (error, _) => error,
+        }
+    }
+
     fn fastest_place(&self) -> fissure_scene::Point {
         let particles = self.solver.particle_frame();
         let mut fastest = (0.0, fissure_scene::Point::origin());
@@ -211,51 +205,9 @@ impl Simulation {
         fastest.1
     }
 
-    /// What running `scene` will cost. Lays particles and grid, and takes a few steps to time them.
-    ///
-    /// # Errors
-    /// As [`Simulation::new`].
-    pub fn estimate(scene: &Scene) -> Result<Estimate, SimulationError> {
-        let mut simulation = Self::new(scene)?;
-        let h = scene.cell_size;
-        let mut cells: Vec<(i64, i64)> = simulation
-            .particles
-            .rest
-            .iter()
-            .map(|p| {
-                let x = (p - simulation.particles.anchor) / h;
-                (x.x.floor() as i64, x.y.floor() as i64)
-            })
-            .collect();
-        cells.sort_unstable();
-        cells.dedup();
-        let time_step = simulation.largest_time_step();
-        let interval = 1.0 / scene.frames.rate;
-        let steps_per_frame = (interval / time_step).ceil().max(1.0);
-        let frames = scene.frames.count().saturating_sub(1) as f64;
-        // Enough steps that the clock's grain does not show.
-        let start = std::time::Instant::now();
-        let mut taken = 0;
-        while taken < 3 || (start.elapsed().as_secs_f64() < 0.2 && taken < 2000) {
-            simulation.one_step(interval / steps_per_frame, false)?;
-            taken += 1;
-        }
-        let per_step = start.elapsed().as_secs_f64() / f64::from(taken);
-        let choice = formulation::choose(scene, &simulation.elastic);
-        let name = match choice.formulation {
-            Formulation::Updated => "updated Lagrangian",
-            _ => "total Lagrangian",
-        };
-        Ok(Estimate {
-            particles: simulation.particles.len(),
-            cells: cells.len(),
-            time_step: interval / steps_per_frame,
-            stable_time_step: simulation.stable_time_step,
-            steps: (steps_per_frame * frames) as u64,
-            formulation: format!("{name}: {}", choice.reason),
-            memory: memory::needed(&simulation.scene, simulation.formulation) as u64,
-            seconds: per_step * steps_per_frame * frames,
-        })
+    /// The scene as it is simulated.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
     }
 
     /// Whether the last frame has been reached.
@@ -370,7 +322,7 @@ impl Simulation {
                 return Ok(false);
             }
         }
-        self.watch_energy()?;
+        self.watch_energy().map_err(|error| self.name_cause(error))?;
         self.state.frame_number += 1;
         self.split_pieces();
         Ok(true)
@@ -398,7 +350,7 @@ impl Simulation {
             // The frame's own time, free of accumulated rounding.
             self.state.time = if is_last { next } else { start + time_step * step as f64 };
             if let Err(error) = done {
-                self.switch_formulation(error)?;
+                self.switch_formulation(error).map_err(|error| self.name_cause(error))?;
                 return Ok(true);
             }
             let progress = Progress {

@@ -48,7 +48,6 @@ impl Total {
     pub(super) fn point_forces(&self) -> Result<Vec<Vec<PointForce>>, SimulationError> {
         let mut loads = Vec::new();
         for (index, load) in self.scene.loads.iter().enumerate() {
-            let empty = || SimulationError::EmptySelection { what: format!("load {}", index + 1) };
             let forces = match &load.kind {
                 LoadKind::Force(total) => {
                     let selected = self.particles.select(&self.scene, &load.selection);
@@ -74,7 +73,7 @@ impl Total {
                     .collect::<Vec<_>>(),
             };
             if forces.is_empty() {
-                return Err(empty());
+                return Err(self.particles.no_particle("load", index, &load.selection).into());
             }
             loads.push(forces);
         }
@@ -163,7 +162,8 @@ impl Total {
                 }
             }
             if constraints.len() == before {
-                return Err(SimulationError::EmptySelection { what: format!("support {}", support + 1) });
+                let selection = &self.scene.supports[support].selection;
+                return Err(self.particles.no_particle("support", support, selection).into());
             }
         }
         Ok(constraints)

@@ -24,7 +24,7 @@ impl Updated {
                 }
             };
             if forces.is_empty() {
-                return Err(SimulationError::EmptySelection { what: format!("load {}", index + 1) });
+                return Err(self.particles.no_particle("load", index, &load.selection).into());
             }
             loads.push(forces);
         }
@@ -58,7 +58,7 @@ impl Updated {
         for (index, support) in self.scene.supports.iter().enumerate() {
             let selected = self.particles.select(&self.scene, &support.selection);
             if selected.is_empty() {
-                return Err(SimulationError::EmptySelection { what: format!("support {}", index + 1) });
+                return Err(self.particles.no_particle("support", index, &support.selection).into());
             }
             held.push(selected);
         }

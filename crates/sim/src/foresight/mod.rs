@@ -1,0 +1,47 @@
+//! What will go wrong with a scene, told before it runs.
+//!
+//! Faults need the particles and stop a simulation before it begins. Warnings come from the scene alone and stop nothing; they rest on estimates of
+//! the order of magnitude, made so that they stay silent where they are not sure.
+
+mod buried;
+mod course;
+mod driving;
+mod idle;
+mod pace;
+mod samples;
+mod section;
+mod strain;
+mod supports;
+mod toughness;
+mod width;
+
+pub(crate) use course::expected_growth;
+pub(crate) use strain::overload;
+
+use crate::elastic::Elastic;
+use crate::particles::Particles;
+use fissure_scene::{Scene, SceneFault, Warning};
+
+/// Checks what can be seen only when the particles are laid.
+///
+/// # Errors
+/// Supports that contradict each other; a body inside a collider.
+pub(crate) fn check_layout(scene: &Scene, particles: &Particles) -> Result<(), SceneFault> {
+    supports::check_supports(scene, particles)?;
+    buried::check_colliders(scene, particles)
+}
+
+/// What will hardly go well with a validated scene. Paths count items as in the scene.
+pub fn warnings(scene: &Scene) -> Vec<Warning> {
+    let elastic: Vec<Elastic> = scene.materials.iter().map(|m| Elastic::new(m, scene.plane)).collect();
+    let mut found = width::narrow_bodies(scene);
+    found.extend(strain::soft_materials(scene, &elastic));
+    match idle::nothing_loads(scene) {
+        Some(warning) => found.push(warning),
+        None => {
+            found.extend(pace::crosses_at_once(scene, &elastic));
+            found.extend(toughness::out_of_reach(scene, &elastic));
+        }
+    }
+    found
+}

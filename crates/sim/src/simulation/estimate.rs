@@ -1,0 +1,122 @@
+//! What a scene will cost, from counts alone: the same scene has the same estimate every time, and none fails that would run.
+
+use super::Simulation;
+use crate::{SimulationError, foresight, formulation, memory};
+use fissure_scene::{Formulation, Kernel, Scene};
+
+/// What a scene will cost, known before it runs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Estimate {
+    /// Number of particles.
+    pub particles: usize,
+    /// Number of grid cells that hold material.
+    pub cells: usize,
+    /// Time step [s].
+    pub time_step: f64,
+    /// Largest stable time step [s].
+    pub stable_time_step: f64,
+    /// Number of steps for all frames.
+    pub steps: u64,
+    /// Name of the formulation and the reason for it.
+    pub formulation: String,
+    /// Memory a run takes at most, frames on their way to disk and meshes included [bytes].
+    pub memory: u64,
+    /// Length by which cracks are expected to grow [m], roughly.
+    pub growth: f64,
+    /// Wall time of the solver with the writing of its frames [s], on the machine that [`Costs`] was measured on.
+    pub seconds: f64,
+}
+
+/// Seconds that parts of a run take. Fitted to the 13 examples on one core of a server of 2023 (`fissure sim --threads 1`); their total is met within
+/// a factor of two there.
+struct Costs {
+    /// A step of a particle in the total formulation.
+    total_step: f64,
+    /// A step of a particle in the updated one, per node of its kernel.
+    updated_step: f64,
+    /// One look at one tip: a domain of about 450 particles.
+    look: f64,
+    /// Growth of a crack by one cell: what is near is cut anew at every increment.
+    grown_cell: f64,
+    /// One particle of one frame: recorded, written, its state saved.
+    recorded: f64,
+    /// A start.
+    start: f64,
+}
+
+const COSTS: Costs =
+    Costs { total_step: 1.5e-8, updated_step: 2.2e-8, look: 1e-4, grown_cell: 0.02, recorded: 8e-7, start: 0.05 };
+
+/// Material that flows stiffens as it is compressed, and takes so many times the steps of the beginning.
+const STIFFENING: f64 = 3.0;
+
+/// A tip looks at every step when it is near growth and at every fourth when not: so many of the steps on the whole.
+const LOOKS_PER_STEP: f64 = 0.6;
+
+impl Simulation {
+    /// What running `scene` will cost. Lays particles and grid, and takes no step.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub fn estimate(scene: &Scene) -> Result<Estimate, SimulationError> {
+        let simulation = Self::new(scene)?;
+        let time_step = simulation.largest_time_step();
+        let interval = 1.0 / scene.frames.rate;
+        let steps_per_frame = (interval / time_step).ceil().max(1.0);
+        let frames = scene.frames.count().saturating_sub(1) as f64;
+        let choice = formulation::choose(scene, &simulation.elastic);
+        let name = match choice.formulation {
+            Formulation::Updated => "updated Lagrangian",
+            _ => "total Lagrangian",
+        };
+        let growth = foresight::expected_growth(scene, &simulation.elastic);
+        Ok(Estimate {
+            particles: simulation.particles.len(),
+            cells: simulation.cells_with_material(),
+            time_step: interval / steps_per_frame,
+            stable_time_step: simulation.stable_time_step,
+            steps: (steps_per_frame * frames) as u64,
+            formulation: format!("{name}: {}", choice.reason),
+            memory: memory::needed(&simulation.scene, simulation.formulation) as u64,
+            growth,
+            seconds: simulation.expected_seconds(steps_per_frame * frames, frames + 1.0, growth),
+        })
+    }
+
+    /// Wall time for so many steps and frames, with cracks that grow by `growth` [m].
+    fn expected_seconds(&self, steps: f64, frames: f64, growth: f64) -> f64 {
+        let particles = self.particles.len() as f64;
+        let flows = self.scene.materials.iter().any(|m| m.plasticity.is_some());
+        let nodes = match self.scene.solver.kernel {
+            Kernel::Bilinear => 4.0,
+            Kernel::Gimp | Kernel::Quadratic => 9.0,
+            Kernel::Cubic => 16.0,
+        };
+        let step = match self.formulation {
+            Formulation::Updated if flows => COSTS.updated_step * nodes * STIFFENING,
+            Formulation::Updated => COSTS.updated_step * nodes,
+            _ => COSTS.total_step,
+        };
+        let tips: usize = self.state.cracks.iter().map(crate::crack::Crack::live_tips).sum();
+        let looks = LOOKS_PER_STEP * steps * tips as f64;
+        // With more increments to a cell it is cut anew more often.
+        let grown = growth / self.scene.cell_size * (0.125 / self.scene.growth.increment).max(0.25);
+        COSTS.start
+            + step * particles * steps
+            + COSTS.look * looks
+            + COSTS.grown_cell * grown
+            + COSTS.recorded * particles * frames
+    }
+
+    fn cells_with_material(&self) -> usize {
+        let h = self.scene.cell_size;
+        let cell = |place: &fissure_scene::Point| {
+            let x = (place - self.particles.anchor) / h;
+            (x.x.floor() as i64, x.y.floor() as i64)
+        };
+        let mut cells: Vec<(i64, i64)> = self.particles.rest.iter().map(cell).collect();
+        cells.sort_unstable();
+        cells.dedup();
+        cells.len()
+    }
+}
