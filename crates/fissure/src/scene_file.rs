@@ -93,7 +93,7 @@ impl From<LoadError> for Failure {
         let place = error.path.display().to_string();
         match (error.source_text, error.span) {
             (Some(text), Some(span)) => {
-                let snippet = Snippet { source: NamedSource::new(place, text), span, other: error.other };
+                let snippet = Snippet { source: NamedSource::new(place, text), span, other: None };
                 Self { snippet: Some(Box::new(snippet)), ..Self::new(exit, error.message, error.remedy) }
             }
             _ => Self::new(exit, format!("{place}: {}", error.message), error.remedy),

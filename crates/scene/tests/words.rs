@@ -76,29 +76,51 @@ fn a_value_of_the_wrong_kind_is_told_what_the_key_takes() {
         ("[growth]\nspeed_keyframes = [10, 1]\n", "two numbers, `[x, y]`", ""),
         ("[solver]\ntime_step = true\n", "\"auto\" or a number of seconds", ""),
         ("[solver]\ntransfer = { flip = \"a lot\" }\n", "a number, without quotes", ""),
-        ("[solver]\ntransfer = 0.95\n", "`solver.transfer` is 0.95", ""),
+        (
+            "[solver]\ntransfer = 0.95\n",
+            "`solver.transfer` is 0.95, but it takes one of `\"pic\"`, `{ flip = ... }`",
+            "xpic",
+        ),
+        (
+            "[solver]\ntransfer = \"flip\"\n",
+            "`solver.transfer` is the text \"flip\", but it takes one of",
+            "{ flip = 0.95 }",
+        ),
+        (
+            "[[region]]\nmaterial = 'glass'\nshape = \"circle\"\n",
+            "`region[0].shape` is the text \"circle\"",
+            "Where it is",
+        ),
+        ("gravity = [0, -9.81]\n", "unknown key `gravity` of `body[0]`", "above the first heading"),
+        ("[grid]\nparticle_spacing = 0,25\n", "not valid TOML", "with a point"),
+        ("[[load]]\nselect = { edge = top }\nforce = [0, 1]\n", "not valid TOML", "in quotes"),
+        ("[[load]]\nforce = [0, 40 MN]\n", "not valid TOML", "without units"),
         ("[output]\nformats = \"glb\"\n", "a list in brackets", "glb"),
         ("[output]\nformats = [1]\n", "`output.formats[0]` is 1", ""),
         ("[[crack]]\nline = \"notch\"\n", "points [[x, y], ...] or { svg = \"id\" }", ""),
         ("[[crack]]\nline = [0, 0, 5, 5]\n", "two numbers, `[x, y]`", ""),
         ("[[crack]]\nline = { svg = 3 }\n", "text in quotes", ""),
-        ("[[crack]]\nline = { svg = \"a\", points = [[0, 0]] }\n", "exactly one key", ""),
+        ("[[crack]]\nline = { svg = \"a\", points = [[0, 0]] }\n", "exactly one key", "Its line"),
         ("[[flaws]]\ncount = 2.5\nlength = 1\n", "a whole number", "Number of flaws"),
         ("[[load]]\nforce = 1e6\n", "two numbers, `[x, y]`", "Total force"),
         ("[[load]]\nselect = \"top\"\nforce = [0, 1]\n", "a table of keys", ""),
         ("[[load]]\nselect = { edge = 1 }\nforce = [0, 1]\n", "`load[0].select.edge` is 1", ""),
         ("[[load]]\nselect = { near = [1, 2], radius = 1 }\nforce = [0, 1]\n", "two numbers, `[x, y]`", ""),
-        ("[[support]]\nfix = true\n", "`support[0].fix` is true", "held still"),
+        (
+            "[[support]]\nfix = true\n",
+            "`support[0].fix` is true, but it takes one of `\"x\"`, `\"y\"`, `\"both\"`",
+            "held still",
+        ),
         ("[[support]]\nvelocity_x = [1, 0]\n", "a number", "Velocity along x"),
         ("[[collider]]\nshape = \"floor\"\n", "`collider[0].shape`", ""),
-        ("[[collider]]\nshape = { }\n", "exactly one key", ""),
+        ("[[collider]]\nshape = { }\n", "one of `{ half_plane = ... }`", ""),
         ("[[collider]]\nshape = { disc = 1 }\n", "a table of keys", ""),
-        ("[[collider]]\nshape = { disc = { radius = 1 }, box = 2 }\n", "exactly one key", ""),
+        ("[[collider]]\nshape = { disc = { radius = 1 }, box = 2 }\n", "one of `{ half_plane = ... }`", ""),
         ("[[region]]\nmaterial = 1\nshape = { circle = { radius = 1 } }\n", "text in quotes", ""),
         ("[[region]]\nmaterial = 'glass'\nshape = { circle = 3 }\n", "a table of keys", ""),
         ("[[material]]\nname = 'a'\nplasticity = 3\n", "true, false or a table of values", ""),
     ];
-    let raw = ["invalid type", "invalid length", "expected", "f64", "u32", "struct", "variant", "untagged"];
+    let raw = ["invalid type", "invalid length", "string only", "f64", "u32", "struct", "variant", "untagged"];
     for (rest, takes, means) in below {
         let words = told(rest);
         if !words.contains(takes) || !words.contains(means) || raw.iter().any(|raw| words.contains(raw)) {

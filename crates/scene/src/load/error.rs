@@ -27,8 +27,6 @@ pub struct LoadError {
     pub source_text: Option<String>,
     /// Bytes of `source_text` that are meant.
     pub span: Option<Range<usize>>,
-    /// Bytes of `source_text` that these do not go together with.
-    pub other: Option<Range<usize>>,
     /// What is wrong, with the offending value.
     pub message: String,
     /// What to do about it.
@@ -57,7 +55,6 @@ impl LoadError {
             path: path.into(),
             source_text: None,
             span: None,
-            other: None,
             message: message.into(),
             remedy: remedy.into(),
         }
@@ -77,13 +74,11 @@ impl LoadError {
     /// A fault of the scene, shown where its key is written: in the file, or in the override that set it.
     pub(crate) fn fault(source: &SceneSource, fault: SceneFault) -> Self {
         let place = source.locate(&fault.path);
-        let other = fault.other.map(|path| source.locate(&path)).filter(|other| other.path == place.path);
         Self {
             kind: LoadErrorKind::Scene,
             path: place.path.into(),
             source_text: Some(place.text),
             span: place.span,
-            other: other.and_then(|other| other.span),
             message: fault.message,
             remedy: fault.remedy,
         }

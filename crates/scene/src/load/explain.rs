@@ -17,7 +17,16 @@ pub(super) fn explain(message: &str, path: &mut KeyPath, file: &Value) -> (Strin
         }
         let owner = KeyPath(path.0[..path.0.len() - 1].to_vec()).to_string();
         let whose = if owner.is_empty() { "of a scene".to_owned() } else { format!("of `{owner}`") };
-        return (format!("unknown key `{unknown}` {whose}"), nearest(&unknown, &known));
+        let message = format!("unknown key `{unknown}` {whose}");
+        let of_the_scene = schema()["properties"].get(&unknown).is_some();
+        let remedy = match (owner.is_empty(), of_the_scene) {
+            // In TOML everything below a heading belongs to it.
+            (false, true) => {
+                format!("`{unknown}` is a key of the scene: write it above the first heading in brackets, or as one")
+            }
+            _ => nearest(&unknown, &known),
+        };
+        return (message, remedy);
     }
     if message.starts_with("unknown variant") {
         let unknown = quoted.next().unwrap_or_default().to_owned();
@@ -32,6 +41,10 @@ pub(super) fn explain(message: &str, path: &mut KeyPath, file: &Value) -> (Strin
         };
         return (format!("`{path}` lacks the key `{missing}`"), remedy);
     }
+    if at(file, path).is_none() && path.0.len() > 1 {
+        // The last key is a word that was written in place of a table.
+        path.0.pop();
+    }
     let written = at(file, path);
     if let ([Key::Name(array)], Some(written)) = (path.0.as_slice(), written)
         && message.ends_with("expected a sequence")
@@ -40,11 +53,18 @@ pub(super) fn explain(message: &str, path: &mut KeyPath, file: &Value) -> (Strin
         return not_a_list(array, written, example);
     }
     let found = written.map_or_else(String::new, |value| format!(" is {}", show(value)));
-    let told = match wanted(message) {
+    let told = match choices(path).or_else(|| wanted(message)) {
         Some(words) => format!("`{path}`{found}, but it takes {words}"),
         None => format!("`{path}`{found}: {message}"),
     };
-    (told, description(path).unwrap_or_else(|| "see `fissure schema` for what each key holds".into()))
+    // What an item of a list means is said of the list.
+    let mut meant = path.clone();
+    let described = std::iter::from_fn(|| {
+        let words = description(&meant);
+        meant.0.pop().map(|_| words)
+    });
+    let remedy = described.flatten().next();
+    (told, remedy.unwrap_or_else(|| "see `fissure schema` for what each key holds".into()))
 }
 
 /// The complaint about a top-level key that is no list of tables.
@@ -129,18 +149,65 @@ fn at<'v>(file: &'v Value, path: &KeyPath) -> Option<&'v Value> {
     })
 }
 
+/// The forms of a key that is one of several words or tables of one key, as one writes them; none for other keys.
+fn choices(path: &KeyPath) -> Option<String> {
+    let schema = schema();
+    let forms = forms(&schema, find(&schema, path)?);
+    let mut found: Vec<String> = Vec::new();
+    for form in &forms {
+        let word = |value: &serde_json::Value| value.as_str().map(|word| format!("`\"{word}\"`"));
+        found.extend(form.get("enum").and_then(|e| e.as_array()).into_iter().flatten().filter_map(word));
+        found.extend(form.get("const").and_then(word));
+        if let (Some([only]), Some(keys)) = (
+            form.get("required").and_then(|r| r.as_array()).map(Vec::as_slice),
+            form.get("properties").and_then(|p| p.as_object()),
+        ) && keys.len() == 1
+        {
+            found.extend(only.as_str().map(|key| format!("`{{ {key} = ... }}`")));
+        }
+    }
+    // A list of points is a form of its own that no single word tells of.
+    let others =
+        forms.iter().any(|f| f.get("type").is_some_and(|t| ["array", "number", "boolean"].iter().any(|o| t == o)));
+    (found.len() > 1 && !others).then(|| format!("one of {}", found.join(", ")))
+}
+
 /// What the schema says of the key at a path.
 fn description(path: &KeyPath) -> Option<String> {
     let schema = schema();
-    let mut here = &schema;
+    let text = find(&schema, path)?.get("description")?.as_str()?;
+    Some(text.split_whitespace().collect::<Vec<_>>().join(" ").trim_end_matches('.').to_owned())
+}
+
+/// The schema of the key at a path.
+fn find<'s>(schema: &'s serde_json::Value, path: &KeyPath) -> Option<&'s serde_json::Value> {
+    let mut here = schema;
     for key in &path.0 {
         here = match key {
-            Key::Name(name) => forms(&schema, here).into_iter().find_map(|form| form.get("properties")?.get(name))?,
-            Key::Index(_) => forms(&schema, here).into_iter().find_map(|form| form.get("items"))?,
+            Key::Name(name) => forms(schema, here).into_iter().find_map(|form| form.get("properties")?.get(name))?,
+            Key::Index(_) => forms(schema, here).into_iter().find_map(|form| form.get("items"))?,
         };
     }
-    let text = here.get("description")?.as_str()?;
-    Some(text.split_whitespace().collect::<Vec<_>>().join(" ").trim_end_matches('.').to_owned())
+    Some(here)
+}
+
+/// What to do about a scene file that is no TOML, by what people write; `line`: the line of the mistake.
+pub(super) fn syntax_remedy(text: &str, line: &str) -> String {
+    let value = line.split_once('=').map_or("", |(_, value)| value.trim());
+    let comma = value.split_once(',').is_some_and(|(whole, part)| {
+        !whole.is_empty()
+            && whole.trim_start_matches('-').bytes().all(|b| b.is_ascii_digit())
+            && part.starts_with(|c: char| c.is_ascii_digit())
+    });
+    if text.trim_start().starts_with(['<', '{']) {
+        "this is no scene file: a scene is TOML, begin one with `fissure new`".into()
+    } else if comma {
+        "write numbers with a point: `0.25`".into()
+    } else if value.contains(|c: char| c.is_alphabetic()) && !value.contains(['"', '\'']) {
+        "put text in quotes, and write numbers without units: `edge = \"top\"`, `40e6`".into()
+    } else {
+        "correct the syntax".into()
+    }
 }
 
 /// A schema and all forms that it stands for: references followed, alternatives listed.

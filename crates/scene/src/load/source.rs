@@ -1,7 +1,7 @@
 //! A scene file as text, its overrides, and where each key is written.
 
 use super::error::{LoadError, LoadErrorKind, SCENE_FILE};
-use super::explain::explain;
+use super::explain::{explain, syntax_remedy};
 use super::overrides::Override;
 use super::place::Place;
 use crate::document::Document;
@@ -24,7 +24,10 @@ impl SceneSource {
         let text = SCENE_FILE.read_text(path)?;
         let malformed = |e: toml::de::Error| {
             let message = format!("not valid TOML: {}", e.message());
-            let malformed = LoadError::malformed(path, &text, e.span(), message, "correct the syntax");
+            let start = e.span().map_or(0, |span| span.start.min(text.len()));
+            let before = text.get(..start).and_then(|t| t.rfind('\n')).map_or(0, |at| at + 1);
+            let line = text.get(before..).and_then(|rest| rest.lines().next()).unwrap_or_default();
+            let malformed = LoadError::malformed(path, &text, e.span(), message, syntax_remedy(&text, line));
             // The file could be read; it is the scene that is wrong.
             LoadError { kind: LoadErrorKind::Scene, ..malformed }
         };
@@ -111,7 +114,6 @@ fn set_error(argument: &str, message: String, remedy: String) -> LoadError {
         path: PathBuf::from(format!("--set {argument}")).into(),
         source_text: Some(argument.into()),
         span: Some(0..argument.len()),
-        other: None,
         message,
         remedy,
     }

@@ -4,7 +4,7 @@ use super::samples::{Samples, two_digits};
 use super::width::width;
 use crate::elastic::Elastic;
 use crate::formulation::impact_speed;
-use fissure_scene::{KeyPath, Load, LoadKind, Scene, Selection, Vector, Warning, material_preset};
+use fissure_scene::{BoxSide, KeyPath, Load, LoadKind, Scene, Selection, Vector, Warning, material_preset};
 
 /// Strain from which on a load is a slip of the pen, or the modulus is: what cracks breaks long before.
 const MOST_STRAIN: f64 = 0.1;
@@ -79,14 +79,11 @@ fn nominal_stress(scene: &Scene, elastic: &[Elastic], load: &Load) -> Option<(us
     let region = &scene.bodies[body].region;
     let (low, high) = region.bounds();
     let factor = greatest_factor(load, scene.frames.time(scene.frames.last));
-    let across = |force: Vector| match load.selection {
-        Selection::Edge { side, .. } => match side {
-            fissure_scene::BoxSide::Left | fissure_scene::BoxSide::Right => high.y - low.y,
-            _ => high.x - low.x,
-        },
-        _ if force.x.abs() > force.y.abs() => high.y - low.y,
-        _ => high.x - low.x,
+    let along_y = |force: Vector| match load.selection {
+        Selection::Edge { side, .. } => matches!(side, BoxSide::Left | BoxSide::Right),
+        _ => force.x.abs() > force.y.abs(),
     };
+    let across = |force: Vector| if along_y(force) { high.y - low.y } else { high.x - low.x };
     let stress = match &load.kind {
         LoadKind::Traction(t) => t.norm(),
         LoadKind::Force(f) => f.norm() / across(*f),
