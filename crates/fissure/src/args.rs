@@ -1,7 +1,8 @@
 //! What was typed. What it means is decided by the stages.
 
 use crate::frame_set::FrameSet;
-use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint, value_parser};
 use fissure_scene::{Format, Part, UpAxis};
 use std::path::PathBuf;
 
@@ -9,7 +10,7 @@ use std::path::PathBuf;
 #[derive(Debug, Parser)]
 #[command(
     name = "fissure",
-    version,
+    version = version(),
     about = "Draw a body and its cracks; get cracked, extruded mesh sequences",
     after_help = "Examples:\n  fissure new my-crack             write a scene to start from\n  fissure run my-crack/scene.toml  simulate it and write its meshes\n\n\
                   Exit codes: 0 ok, 2 usage or scene, 3 file, 4 numerical failure (do not retry), 75 interrupted (run again to resume)",
@@ -60,13 +61,48 @@ pub(crate) enum Command {
     /// Print the JSON schema of scene files, for editors.
     #[command(after_help = "Example:\n  fissure schema > scene.schema.json")]
     Schema,
+    /// Print completions for a shell.
+    #[command(
+        after_help = "Examples:\n  fissure completions bash > ~/.local/share/bash-completion/completions/fissure\n  \
+                      fissure completions zsh > ~/.zfunc/_fissure\n  \
+                      fissure completions fish > ~/.config/fish/completions/fissure.fish\n  \
+                      fissure completions powershell >> $PROFILE"
+    )]
+    Completions(CompletionsArguments),
+    /// Write manual pages into a folder.
+    #[command(after_help = "Example:\n  fissure man ~/.local/share/man/man1 && man fissure-run")]
+    Man(ManArguments),
+}
+
+/// Version, and the commit the program is built from where it is known.
+fn version() -> &'static str {
+    if env!("FISSURE_REVISION").is_empty() {
+        env!("CARGO_PKG_VERSION")
+    } else {
+        concat!(env!("CARGO_PKG_VERSION"), " (", env!("FISSURE_REVISION"), ")")
+    }
+}
+
+/// Arguments of `completions`.
+#[derive(Debug, Args)]
+pub(crate) struct CompletionsArguments {
+    /// The shell.
+    pub(crate) shell: clap_complete::Shell,
+}
+
+/// Arguments of `man`.
+#[derive(Debug, Args)]
+pub(crate) struct ManArguments {
+    /// Folder to write the pages into; made when missing.
+    #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub(crate) directory: PathBuf,
 }
 
 /// Arguments of `new`.
 #[derive(Debug, Args)]
 pub(crate) struct NewArguments {
     /// Folder to write `scene.toml` into; made when missing.
-    #[arg(default_value = ".")]
+    #[arg(default_value = ".", value_hint = ValueHint::DirPath)]
     pub(crate) directory: PathBuf,
 }
 
@@ -74,6 +110,7 @@ pub(crate) struct NewArguments {
 #[derive(Debug, Args)]
 pub(crate) struct SceneArguments {
     /// The scene file, or the folder it is in.
+    #[arg(value_hint = ValueHint::AnyPath)]
     pub(crate) scene: PathBuf,
     /// Override one key of the scene file; may be repeated. The value is TOML; a bare word is a string.
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -87,7 +124,7 @@ pub(crate) struct SceneArguments {
 #[derive(Debug, Args)]
 pub(crate) struct TakeArguments {
     /// Folder to write into [default: out/NAME, NAME being the scene's name].
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) output: Option<PathBuf>,
     /// Start afresh: remove the take and the meshes of this scene's name that are in the output folder.
     #[arg(long)]
@@ -100,17 +137,17 @@ pub(crate) struct TakeArguments {
 /// What meshes to write.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct MeshArguments {
-    /// Mesh formats [default: as in the scene].
-    #[arg(long, value_name = "FORMAT,..", value_delimiter = ',', value_parser = parse_format)]
+    /// Mesh formats: glb, ply [default: as in the scene].
+    #[arg(long, value_name = "FORMAT,..", value_delimiter = ',', value_parser = words::<Format>(&["glb", "ply"]), hide_possible_values = true)]
     pub(crate) formats: Vec<Format>,
     /// Parts of the scene: cracked, body, faces, collider, particles [default: as in the scene].
-    #[arg(long, value_name = "PART,..", value_delimiter = ',', value_parser = parse_part)]
+    #[arg(long, value_name = "PART,..", value_delimiter = ',', value_parser = words::<Part>(&["cracked", "body", "faces", "collider", "particles"]), hide_possible_values = true)]
     pub(crate) parts: Vec<Part>,
     /// Thickness of the solids in metres [default: as in the scene].
     #[arg(long, value_name = "METRES", value_parser = parse_thickness)]
     pub(crate) thickness: Option<f64>,
     /// Up axis of PLY files, y or z; glTF is always y up [default: as in the scene].
-    #[arg(long, value_name = "AXIS", value_parser = parse_up)]
+    #[arg(long, value_name = "AXIS", value_parser = words::<UpAxis>(&["y", "z"]), hide_possible_values = true)]
     pub(crate) up: Option<UpAxis>,
 }
 
@@ -151,6 +188,7 @@ pub(crate) struct SimArguments {
 #[derive(Debug, Args)]
 pub(crate) struct PostArguments {
     /// The take, a folder ending in `.take`, or the folder that holds it.
+    #[arg(value_hint = ValueHint::DirPath)]
     pub(crate) take: PathBuf,
     #[command(flatten)]
     pub(crate) mesh: MeshArguments,
@@ -158,7 +196,7 @@ pub(crate) struct PostArguments {
     #[arg(long, value_name = "RANGE")]
     pub(crate) frames: Option<FrameSet>,
     /// Folder to write into [default: the folder that holds the take].
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) output: Option<PathBuf>,
     /// Threads to compute with [default: one per core].
     #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=1024))]
@@ -210,21 +248,13 @@ pub(crate) enum LogFormat {
     Json,
 }
 
-/// Reads one of the words that the scene file uses too, so that the two cannot differ.
-fn parse_word<T: serde::de::DeserializeOwned>(word: &str) -> Result<T, String> {
-    serde_json::from_value(serde_json::Value::String(word.to_owned())).map_err(|e| e.to_string())
-}
-
-fn parse_format(word: &str) -> Result<Format, String> {
-    parse_word(word)
-}
-
-fn parse_part(word: &str) -> Result<Part, String> {
-    parse_word(word)
-}
-
-fn parse_up(word: &str) -> Result<UpAxis, String> {
-    parse_word(word)
+/// Reads one of `words` as the scene file would: what it stands for is said there, once. Shells complete them.
+fn words<T>(words: &'static [&'static str]) -> impl TypedValueParser<Value = T>
+where
+    T: serde::de::DeserializeOwned + Clone + Send + Sync + 'static,
+{
+    let meant = |word: String| serde_json::from_value::<T>(serde_json::Value::String(word));
+    PossibleValuesParser::new(words).try_map(meant)
 }
 
 fn parse_thickness(word: &str) -> Result<f64, String> {
@@ -250,6 +280,28 @@ mod tests {
     #[test]
     fn definitions_are_consistent() {
         Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn every_word_of_the_command_line_is_one_of_the_scene_file() {
+        let mut program = Arguments::command();
+        program.build();
+        let run = program.find_subcommand("run").unwrap();
+        for option in ["formats", "parts", "up"] {
+            let words = run.get_arguments().find(|argument| argument.get_id() == option).unwrap().get_possible_values();
+            let words: Vec<_> = words.iter().map(|word| word.get_name().to_owned()).collect();
+            let schema = fissure_scene::schema();
+            let of_schema = &schema["$defs"][match option {
+                "formats" => "Format",
+                "parts" => "Part",
+                _ => "UpAxis",
+            }];
+            let known = of_schema["oneOf"].as_array().unwrap().iter().map(|word| word["const"].as_str().unwrap());
+            assert!(known.eq(words.iter()), "{option}: {words:?}, {of_schema}");
+            for word in words {
+                Arguments::try_parse_from(["fissure", "run", "s.toml", &format!("--{option}={word}")]).unwrap();
+            }
+        }
     }
 
     #[test]

@@ -3,12 +3,14 @@
 mod args;
 mod caution;
 mod check;
+mod completions;
 mod exit;
 mod failure;
 mod folder;
 mod frame_set;
 mod interrupt;
 mod invocation;
+mod man;
 mod meshes;
 mod moved;
 mod new;
@@ -61,5 +63,7 @@ fn execute(command: &Command, interrupt: &Interrupt, report: &Report) -> Result<
         Command::Post(arguments) => post::post(arguments, interrupt, report),
         Command::Verify(arguments) => verify::verify(arguments, report),
         Command::Schema => schema::schema(),
+        Command::Completions(arguments) => completions::completions(arguments),
+        Command::Man(arguments) => man::man(arguments, report),
     }
 }

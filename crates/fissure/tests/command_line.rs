@@ -107,7 +107,7 @@ fn a_new_scene_checks_and_runs() {
     for word in ["particles", "cells", "time step", "steps", "formulation", "expected time", "expected memory"] {
         assert!(text.contains(word), "{word} is missing:\n{text}");
     }
-    assert_eq!(names(folder.path()), ["mine/scene.toml"], "check writes nothing");
+    assert_eq!(names(folder.path()), ["mine/scene.schema.json", "mine/scene.toml"], "check writes nothing");
     expect(
         &run(folder.path(), &["run", "mine/scene.toml", "--frames", "1-2", "--set", "grid.particle_spacing=0.5"]),
         0,
@@ -139,6 +139,26 @@ fn a_new_scene_on_a_full_disk_leaves_nothing() {
     assert!(text.contains("mine/scene.toml") && text.contains("free some space"), "{text}");
     assert_eq!(names(folder.path()), [""; 0]);
     expect(&run(folder.path(), &["new", "mine"]), 0);
+}
+
+/// Truth: the first line of the scene names, relative to itself, a file that holds what `schema` prints.
+#[test]
+fn a_new_scene_names_the_schema_beside_it() {
+    let folder = workplace();
+    expect(&run(folder.path(), &["new", "mine"]), 0);
+    let scene = std::fs::read_to_string(folder.path().join("mine/scene.toml")).unwrap();
+    let named = scene.lines().next().unwrap().strip_prefix("#:schema ").unwrap();
+    let schema = folder.path().join("mine").join(named);
+    assert_eq!(std::fs::read(&schema).unwrap(), run(folder.path(), &["schema"]).stdout);
+    // An older schema is made anew; a file of another kind is kept, and nothing is written beside it.
+    std::fs::remove_file(folder.path().join("mine/scene.toml")).unwrap();
+    std::fs::write(&schema, r#"{ "title": "Fissure scene" }"#).unwrap();
+    expect(&run(folder.path(), &["new", "mine"]), 0);
+    assert_eq!(std::fs::read(&schema).unwrap(), run(folder.path(), &["schema"]).stdout);
+    std::fs::remove_file(folder.path().join("mine/scene.toml")).unwrap();
+    std::fs::write(&schema, "years of work").unwrap();
+    assert!(expect(&run(folder.path(), &["new", "mine"]), 3).contains("scene.schema.json"));
+    assert_eq!(files(&folder.path().join("mine")).into_values().collect::<Vec<_>>(), [b"years of work"]);
 }
 
 #[test]
@@ -223,6 +243,54 @@ fn quiet_says_nothing_when_all_is_well() {
         &["run", "plate.toml", "--quiet", "--set", "grid.particle_spacing=0.375", "--frames", "1-3"],
     );
     assert_eq!(expect(&output, 0), "");
+}
+
+/// Truth: the shells themselves, where they are installed; each script speaks of every command.
+#[test]
+fn shells_read_their_completions() {
+    let folder = workplace();
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = expect(&run(folder.path(), &["completions", shell]), 0);
+        for word in ["new", "check", "verify", "completions", "overwrite"] {
+            assert!(script.contains(word), "{shell}: {word} is missing");
+        }
+        let file = folder.path().join(shell);
+        std::fs::write(&file, script).unwrap();
+        // `-n`: read, do not run. Shells without it, or that are not here, are not asked.
+        if ["bash", "zsh", "fish"].contains(&shell)
+            && let Ok(output) = Command::new(shell).arg("-n").arg(&file).output()
+        {
+            assert!(output.status.success(), "{shell}: {}", String::from_utf8_lossy(&output.stderr));
+        }
+    }
+    // What bash offers after a word, asked as bash asks.
+    let ask = "source ./bash; COMP_WORDS=(fissure run --formats ''); COMP_CWORD=3; _fissure fissure '' --formats; echo ${COMPREPLY[*]}";
+    let output = Command::new("bash").args(["-c", ask]).current_dir(folder.path()).output().unwrap();
+    assert_eq!(String::from_utf8_lossy(&output.stdout).trim(), "glb ply", "{output:?}");
+    assert!(expect(&run(folder.path(), &["completions", "cmd"]), 2).contains("powershell"));
+}
+
+/// Truth: one page of the program and of each command, with the words of `--help`; the same pages replace themselves.
+#[test]
+fn manual_pages_are_written_whole() {
+    let folder = workplace();
+    for _ in 0..2 {
+        expect(&run(folder.path(), &["man", "share/man1"]), 0);
+    }
+    let pages = names(&folder.path().join("share/man1"));
+    let help = expect(&run(folder.path(), &["--help"]), 0);
+    let commands = help.lines().skip_while(|line| !line.starts_with("Commands:")).skip(1).map_while(|line| {
+        let word = line.strip_prefix("  ")?.split_whitespace().next()?;
+        Some(word.to_owned())
+    });
+    let expected: std::collections::BTreeSet<String> =
+        commands.filter(|c| c != "help").map(|c| format!("fissure-{c}.1")).chain(["fissure.1".to_owned()]).collect();
+    assert!(expected.len() > 8 && pages.iter().eq(&expected), "{pages:?} instead of {expected:?}");
+    let page = std::fs::read_to_string(folder.path().join("share/man1/fissure-run.1")).unwrap();
+    assert!(page.starts_with(".ie") || page.contains(".TH"), "{page}");
+    assert!(page.contains("overwrite") && page.contains("Example"), "{page}");
+    let told = expect(&run(folder.path(), &["man", "plate.toml/man1"]), 3);
+    assert!(told.contains("plate.toml/man1"), "{told}");
 }
 
 #[cfg(unix)]

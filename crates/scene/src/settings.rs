@@ -61,7 +61,7 @@ pub enum Transfer {
     /// Grid velocity only; damps every wave.
     Pic,
     /// `flip` parts of the grid's velocity change added to the particle, the rest PIC; 1 is pure FLIP.
-    Flip(f64),
+    Flip(#[schemars(transform = crate::validate::UNIT.bounds())] f64),
     /// Affine PIC.
     Apic,
     /// Extended PIC of order 2.

@@ -1,6 +1,7 @@
 //! Cracks, guides and flaws of a scene file.
 
 use super::{Line, Shape};
+use crate::validate::{DEGREES, DEGREES_APART, FLAW_DENSITY, FRAME, LENGTH, SPREAD, UNIT, pairs};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -58,10 +59,12 @@ pub struct GuideKeys {
     pub line: Line,
     /// How much the path decides where the crack goes: 0 not at all, 1 (default) exactly along it, between them a blend
     /// of the drawn and the physical direction.
+    #[schemars(transform = UNIT.bounds())]
     pub strength: Option<f64>,
     /// When the crack is where: [[frame, fraction of the path's length, 0 to 1], ...], frames rising, fractions never
     /// falling, linear between. Default: fracture mechanics decide when the crack grows.
     #[serde(default)]
+    #[schemars(transform = pairs(FRAME, UNIT))]
     pub keyframes: Vec<[f64; 2]>,
 }
 
@@ -76,23 +79,29 @@ pub struct FlawsKeys {
     /// Only flaws with their centre inside this shape.
     pub shape: Option<Shape>,
     /// Flaws per m².
+    #[schemars(transform = FLAW_DENSITY.bounds())]
     pub density: Option<f64>,
     /// Number of flaws.
     pub count: Option<u32>,
     /// Mean length in m. Required. Several cells, for the grid to see them as cracks.
+    #[schemars(transform = LENGTH.bounds())]
     pub length: f64,
     /// Lengths vary evenly by this part of the mean, 0 to below 1. Default: 0, all of the same length.
     #[serde(default)]
+    #[schemars(transform = SPREAD.bounds())]
     pub length_spread: f64,
     /// Direction in degrees, counter-clockwise from x. Default: with `angle_spread` 0, otherwise all directions.
+    #[schemars(transform = DEGREES.bounds())]
     pub angle: Option<f64>,
     /// Directions vary evenly by this much to either side of `angle`, in degrees. Default: with `angle` 0, otherwise 90: all
     /// directions.
+    #[schemars(transform = DEGREES_APART.bounds())]
     pub angle_spread: Option<f64>,
     /// Number that stands for one arrangement. Default: 0.
     #[serde(default)]
     pub seed: u64,
     /// Least distance in m from the outline, from cracks and from other flaws. Default: two cells.
+    #[schemars(transform = LENGTH.bounds())]
     pub margin: Option<f64>,
     /// Which ends may grow. Default: both.
     #[serde(default)]

@@ -1,5 +1,6 @@
 //! Drawings, shapes and lines of a scene file.
 
+use crate::validate::{COORDINATE, LENGTH};
 use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{MapAccess, SeqAccess, Visitor};
@@ -16,8 +17,10 @@ pub struct Drawing {
     /// SVG file, relative to the scene file. Required.
     pub file: PathBuf,
     /// How many metres the width of the drawing (of its viewBox, if it has one) spans.
+    #[schemars(transform = LENGTH.bounds())]
     pub width: Option<f64>,
     /// How many metres one user unit of the drawing (of its viewBox, if it has one) is.
+    #[schemars(transform = LENGTH.bounds())]
     pub metres_per_unit: Option<f64>,
     /// Which point of the drawing becomes (0, 0). Default: its centre.
     #[serde(default)]
@@ -38,7 +41,7 @@ pub enum Origin {
     #[schemars(with = "CornerWord")]
     Corner,
     /// A point [x, y] in the drawing's user units (y down, as in the SVG).
-    Point([f64; 2]),
+    Point(#[schemars(transform = COORDINATE.bounds())] [f64; 2]),
 }
 
 #[derive(JsonSchema)]
@@ -97,8 +100,10 @@ pub enum Shape {
 #[serde(deny_unknown_fields)]
 pub struct RectangleKeys {
     /// Lower left corner [x, y] in m.
+    #[schemars(transform = COORDINATE.bounds())]
     pub min: [f64; 2],
     /// Upper right corner [x, y] in m.
+    #[schemars(transform = COORDINATE.bounds())]
     pub max: [f64; 2],
 }
 
@@ -108,8 +113,10 @@ pub struct RectangleKeys {
 pub struct CircleKeys {
     /// Centre [x, y] in m. Default: the origin.
     #[serde(default)]
+    #[schemars(transform = COORDINATE.bounds())]
     pub center: [f64; 2],
     /// Radius in m.
+    #[schemars(transform = LENGTH.bounds())]
     pub radius: f64,
 }
 
@@ -127,9 +134,11 @@ pub struct PolygonKeys {
 #[serde(deny_unknown_fields)]
 struct PolygonTable {
     /// Corners of the outer ring in m; it closes by itself.
+    #[schemars(transform = COORDINATE.bounds())]
     exterior: Vec<[f64; 2]>,
     /// Corners of each hole in m.
     #[serde(default)]
+    #[schemars(transform = COORDINATE.bounds())]
     holes: Vec<Vec<[f64; 2]>>,
 }
 
@@ -137,7 +146,7 @@ struct PolygonTable {
 #[schemars(untagged)]
 #[allow(dead_code, reason = "only describes the two forms to the JSON schema")]
 enum PolygonForms {
-    Corners(Vec<[f64; 2]>),
+    Corners(#[schemars(transform = COORDINATE.bounds())] Vec<[f64; 2]>),
     Table(PolygonTable),
 }
 
@@ -176,7 +185,7 @@ pub enum Line {
 #[serde(rename_all = "snake_case")]
 enum LineTable {
     /// Points [[x, y], ...] in m.
-    Points(Vec<[f64; 2]>),
+    Points(#[schemars(transform = COORDINATE.bounds())] Vec<[f64; 2]>),
     /// Id of an open path, line or polyline of the drawing.
     Svg(String),
 }
@@ -185,7 +194,7 @@ enum LineTable {
 #[schemars(untagged)]
 #[allow(dead_code, reason = "only describes the two forms to the JSON schema")]
 enum LineForms {
-    Points(Vec<[f64; 2]>),
+    Points(#[schemars(transform = COORDINATE.bounds())] Vec<[f64; 2]>),
     Table(LineTable),
 }
 

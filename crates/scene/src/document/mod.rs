@@ -18,6 +18,7 @@ pub use settings::*;
 pub use switch::Switch;
 
 use crate::settings::PlaneState;
+use crate::validate::ACCELERATION;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -32,6 +33,7 @@ pub struct Document {
     /// Plane strain (thick bodies, the default) or plane stress (thin plates).
     pub plane: PlaneState,
     /// Acceleration of gravity [x, y] in m/s². Default: none.
+    #[schemars(transform = ACCELERATION.bounds())]
     pub gravity: [f64; 2],
     /// The SVG drawing that `svg = "id"` refers to.
     pub drawing: Option<Drawing>,

@@ -2,6 +2,9 @@
 
 use super::Shape;
 use crate::scene::{BoxSide, Contact};
+use crate::validate::{
+    ANGULAR_VELOCITY, COORDINATE, CURVE_FACTOR, DEGREES, FORCE, FRICTION, LENGTH, TIME, TRACTION, VELOCITY, pairs,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +22,7 @@ pub struct ColliderKeys {
     pub contact: Contact,
     /// Coulomb friction for `separate` and `slip`. Default: 0.
     #[serde(default)]
+    #[schemars(transform = FRICTION.bounds())]
     pub friction: f64,
     /// Motion: linear between keyframes, at rest before the first and after the last. Default: at rest.
     #[serde(default)]
@@ -36,7 +40,7 @@ pub enum ColliderShapeKeys {
     /// Axis-parallel rectangle. Turns about its centre.
     Box(BoxKeys),
     /// Simple polygon `[[x, y], ...]` in m. Turns about its centre of area.
-    Polygon(Vec<[f64; 2]>),
+    Polygon(#[schemars(transform = COORDINATE.bounds())] Vec<[f64; 2]>),
     /// Element of the drawing, by id: one closed outline without holes. Turns about its centre of area.
     Svg(String),
 }
@@ -46,6 +50,7 @@ pub enum ColliderShapeKeys {
 #[serde(deny_unknown_fields)]
 pub struct HalfPlaneKeys {
     /// A point [x, y] of the surface in m.
+    #[schemars(transform = COORDINATE.bounds())]
     pub point: [f64; 2],
     /// Direction [x, y] out of the obstacle; any length. Default: up.
     #[serde(default = "up")]
@@ -61,8 +66,10 @@ fn up() -> [f64; 2] {
 #[serde(deny_unknown_fields)]
 pub struct DiscKeys {
     /// Centre [x, y] in m.
+    #[schemars(transform = COORDINATE.bounds())]
     pub center: [f64; 2],
     /// Radius in m.
+    #[schemars(transform = LENGTH.bounds())]
     pub radius: f64,
 }
 
@@ -71,8 +78,10 @@ pub struct DiscKeys {
 #[serde(deny_unknown_fields)]
 pub struct BoxKeys {
     /// Lower left corner [x, y] in m.
+    #[schemars(transform = COORDINATE.bounds())]
     pub min: [f64; 2],
     /// Upper right corner [x, y] in m.
+    #[schemars(transform = COORDINATE.bounds())]
     pub max: [f64; 2],
 }
 
@@ -81,12 +90,15 @@ pub struct BoxKeys {
 #[serde(deny_unknown_fields)]
 pub struct Keyframe {
     /// Time in s; rising from keyframe to keyframe.
+    #[schemars(transform = TIME.bounds())]
     pub time: f64,
     /// Displacement [x, y] in m.
     #[serde(default)]
+    #[schemars(transform = COORDINATE.bounds())]
     pub position: [f64; 2],
     /// Turn in degrees, counter-clockwise.
     #[serde(default)]
+    #[schemars(transform = DEGREES.bounds())]
     pub angle: f64,
 }
 
@@ -106,8 +118,10 @@ pub struct Select {
     /// than a particle spacing from it; a closed shape selects the material inside it.
     pub svg: Option<String>,
     /// Material within `radius` of these points [[x, y], ...] in m.
+    #[schemars(transform = COORDINATE.bounds())]
     pub near: Option<Vec<[f64; 2]>>,
     /// Distance in m; needs `near`.
+    #[schemars(transform = LENGTH.bounds())]
     pub radius: Option<f64>,
 }
 
@@ -119,13 +133,16 @@ pub struct LoadKeys {
     #[serde(default)]
     pub select: Select,
     /// Total force [x, y] per metre of thickness in N/m, shared among all the selected material by its volume.
+    #[schemars(transform = FORCE.bounds())]
     pub force: Option<[f64; 2]>,
     /// Force per area [x, y] in Pa on the selected edge; needs `select = { edge = ... }` or an open line of the drawing.
+    #[schemars(transform = TRACTION.bounds())]
     pub traction: Option<[f64; 2]>,
     /// Forces on single particles.
     pub per_point: Option<Vec<PointForce>>,
     /// Factor over time, [[time in s, factor], ...] with rising times, linear between. Default: always 1.
     #[serde(default)]
+    #[schemars(transform = pairs(TIME, CURVE_FACTOR))]
     pub curve: Vec<[f64; 2]>,
 }
 
@@ -134,8 +151,10 @@ pub struct LoadKeys {
 #[serde(deny_unknown_fields)]
 pub struct PointForce {
     /// Place [x, y] in m.
+    #[schemars(transform = COORDINATE.bounds())]
     pub at: [f64; 2],
     /// Force [x, y] per metre of thickness in N/m.
+    #[schemars(transform = FORCE.bounds())]
     pub force: [f64; 2],
 }
 
@@ -149,11 +168,14 @@ pub struct SupportKeys {
     /// Directions that are held still.
     pub fix: Option<Fix>,
     /// Velocity along x in m/s; without it the material is free along x.
+    #[schemars(transform = VELOCITY.bounds())]
     pub velocity_x: Option<f64>,
     /// Velocity along y in m/s; without it the material is free along y.
+    #[schemars(transform = VELOCITY.bounds())]
     pub velocity_y: Option<f64>,
     /// Factor on the velocity over time, [[time in s, factor], ...] with rising times, linear between. Default: always 1.
     #[serde(default)]
+    #[schemars(transform = pairs(TIME, CURVE_FACTOR))]
     pub curve: Vec<[f64; 2]>,
 }
 
@@ -178,11 +200,14 @@ pub struct InitialVelocityKeys {
     pub select: Select,
     /// Velocity [x, y] in m/s.
     #[serde(default)]
+    #[schemars(transform = VELOCITY.bounds())]
     pub velocity: [f64; 2],
     /// Rotation, counter-clockwise, in rad/s.
     #[serde(default)]
+    #[schemars(transform = ANGULAR_VELOCITY.bounds())]
     pub angular_velocity: f64,
     /// Centre of the rotation [x, y] in m. Default: the origin.
     #[serde(default)]
+    #[schemars(transform = COORDINATE.bounds())]
     pub center: [f64; 2],
 }

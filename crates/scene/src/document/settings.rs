@@ -3,6 +3,10 @@
 use super::Switch;
 use crate::scene::Plasticity;
 use crate::settings::*;
+use crate::validate::{
+    ACUTE, AREA, BENDING, CELLS, CRITICAL_COMPRESSION, CRITICAL_STRETCH, DAMPING, FRACTION, FRAME, FRAME_RATE,
+    FRICTION, HARDENING, LENGTH, RELEASE_RATIO, SPEED_FACTOR, TIME_STEP, pairs,
+};
 use schemars::JsonSchema;
 use serde::de::Visitor;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -13,8 +17,10 @@ use std::fmt;
 #[serde(deny_unknown_fields, default)]
 pub struct GridKeys {
     /// Distance between neighbouring particles in m. Default: the larger side of the bodies' bounding box / 128.
+    #[schemars(transform = LENGTH.bounds())]
     pub particle_spacing: Option<f64>,
     /// Distance between neighbouring grid nodes in m. Default: twice the particle spacing.
+    #[schemars(transform = LENGTH.bounds())]
     pub cell_size: Option<f64>,
 }
 
@@ -35,18 +41,22 @@ pub struct SolverKeys {
     /// Time step in s, or `"auto"` (default): chosen from the stability limit.
     pub time_step: TimeStep,
     /// Fraction of the stability limit that is used, above 0 up to 1.
+    #[schemars(transform = FRACTION.bounds())]
     pub courant: Option<f64>,
     /// Damping: velocities decay as exp(-damping t), in 1/s.
+    #[schemars(transform = DAMPING.bounds())]
     pub damping: Option<f64>,
     /// Whether the two faces of a crack push on each other.
     pub crack_contact: Option<bool>,
     /// Coulomb friction between crack faces; `inf`: they stick.
+    #[schemars(transform = FRICTION.bounds())]
     pub crack_friction: Option<f64>,
     /// How the material around a tip is divided: `line_crossing` or `partly_cut`.
     pub tip_division: Option<TipDivision>,
     /// How the energy release rate is measured: `contour` or `domain`.
     pub j_method: Option<JMethod>,
     /// Radius of the contour or domain, in cells. Default: four cells, or 3/8 of the way to the nearest edge, kink or other crack, but at most six.
+    #[schemars(transform = CELLS.bounds())]
     pub j_radius: Option<f64>,
     /// Whether the dynamic area term is added to the energy release rate.
     pub area_term: Option<bool>,
@@ -63,7 +73,7 @@ pub enum TimeStep {
     #[schemars(with = "AutoWord")]
     Auto,
     /// Seconds.
-    Seconds(f64),
+    Seconds(#[schemars(transform = TIME_STEP.bounds())] f64),
 }
 
 #[derive(JsonSchema)]
@@ -106,12 +116,16 @@ pub struct GrowthKeys {
     /// Whether cracks grow. Default: true.
     pub enabled: Option<bool>,
     /// Length of one increment, in cells: how far a tip goes before it looks for its direction again.
+    #[schemars(transform = CELLS.bounds())]
     pub increment: Option<f64>,
     /// How much cracks bend: 0 straight on, 1 physical (default), above 1 exaggerated. Changes the direction only, never the moment.
+    #[schemars(transform = BENDING.bounds())]
     pub bending: Option<f64>,
     /// Highest speed of a tip as a fraction of the Rayleigh wave speed, above 0 up to 1.
+    #[schemars(transform = FRACTION.bounds())]
     pub speed_limit: Option<f64>,
     /// Factor on `speed_limit` over time: [[frame, factor], ...] with rising frames, linear between; 0 holds all tips.
+    #[schemars(transform = pairs(FRAME, SPEED_FACTOR))]
     pub speed_keyframes: Vec<[f64; 2]>,
     /// Whether tips divide into two. `false` (default), `true`, or values.
     pub branching: Option<Switch<BranchingKeys>>,
@@ -122,10 +136,13 @@ pub struct GrowthKeys {
 #[serde(deny_unknown_fields, default)]
 pub struct BranchingKeys {
     /// A tip divides when its energy release rate is this many times what one tip needs, above 1. Default: 2.
+    #[schemars(transform = RELEASE_RATIO.bounds())]
     pub release_ratio: Option<f64>,
     /// Angle in degrees between each new tip and the old direction, above 0 and below 90. Default: 27.
+    #[schemars(transform = ACUTE.bounds())]
     pub half_angle: Option<f64>,
     /// Least length of crack in m between two divisions. Default: 12 cells.
+    #[schemars(transform = LENGTH.bounds())]
     pub spacing: Option<f64>,
 }
 
@@ -133,13 +150,15 @@ pub struct BranchingKeys {
 #[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FrameKeys {
-    /// Number of the first frame. Default: 1.
+    /// Number of the first frame, at least 0. Default: 1.
+    #[schemars(range(min = 0))]
     pub first: Option<i64>,
     /// Number of the last frame. Default: 47 frames after the first.
     pub last: Option<i64>,
     /// First and last frame in one, as `"1-48"`; instead of `first` and `last`.
     pub range: Option<String>,
     /// Frames per second of simulated time. Default: 24. Cracks are fast: slow motion needs thousands.
+    #[schemars(transform = FRAME_RATE.bounds())]
     pub rate: Option<f64>,
 }
 
@@ -148,6 +167,7 @@ pub struct FrameKeys {
 #[serde(deny_unknown_fields, default)]
 pub struct OutputKeys {
     /// Thickness of the solids in m. Default: a tenth of the larger side of the bodies' bounding box.
+    #[schemars(transform = LENGTH.bounds())]
     pub thickness: Option<f64>,
     /// File formats: `glb`, `ply`. Default: both.
     pub formats: Vec<Format>,
@@ -156,6 +176,7 @@ pub struct OutputKeys {
     /// Axis that points up in PLY files: `y` or `z` (default). GLB is always y up.
     pub up: UpAxis,
     /// Fragments of less area than this in m² are dropped. Default: 0, none.
+    #[schemars(transform = AREA.bounds())]
     pub smallest_fragment: f64,
 }
 
@@ -176,10 +197,13 @@ impl Default for OutputKeys {
 #[serde(deny_unknown_fields, default)]
 pub struct PlasticityValues {
     /// Critical compression θ_c: strain beyond it is plastic.
+    #[schemars(transform = CRITICAL_COMPRESSION.bounds())]
     pub critical_compression: Option<f64>,
     /// Critical stretch θ_s: strain beyond it is plastic.
+    #[schemars(transform = CRITICAL_STRETCH.bounds())]
     pub critical_stretch: Option<f64>,
     /// Hardening ξ: how much compressed material stiffens.
+    #[schemars(transform = HARDENING.bounds())]
     pub hardening: Option<f64>,
 }
 

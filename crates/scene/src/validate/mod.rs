@@ -1,5 +1,6 @@
 //! What a scene must fulfil to be simulated. Every range is written here, once.
 
+mod bounds;
 mod count;
 mod cracks;
 mod curve;
@@ -10,6 +11,7 @@ mod region;
 mod settings;
 mod toughness;
 
+pub(crate) use bounds::pairs;
 pub(crate) use count::*;
 #[cfg(test)]
 pub(crate) use cracks::leaves;

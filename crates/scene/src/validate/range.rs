@@ -15,9 +15,9 @@ pub(crate) struct Range {
     /// Upper end.
     pub(crate) high: f64,
     /// Whether the ends themselves belong to it.
-    ends: [bool; 2],
+    pub(super) ends: [bool; 2],
     /// Whether infinity does too, and what it stands for.
-    infinity: Option<&'static str>,
+    pub(super) infinity: Option<&'static str>,
     unit: &'static str,
 }
 
