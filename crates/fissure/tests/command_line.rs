@@ -629,7 +629,7 @@ const DRAWN: &str = "shape = { svg = \"plate\" }\n[drawing]\nfile = \"drawing.sv
 
 const TABLE: &[Bad] = &[
     Bad { what: "missing scene", arguments: &["run", "no.toml"], code: 3, says: &["no.toml"], ..FINE },
-    Bad { what: "malformed TOML", edit: ("[grid]", "[grid"), code: 3, says: &["plate.toml", ":19:"], ..FINE },
+    Bad { what: "malformed TOML", edit: ("[grid]", "[grid"), says: &["plate.toml", ":19:"], ..FINE },
     Bad { what: "unknown key", edit: ("thickness", "thicknes"), says: &["thicknes", "`thickness`"], ..FINE },
     Bad { what: "unknown material", edit: ("\"pmma\"", "\"pmme\""), says: &["pmme", "`pmma`"], ..FINE },
     Bad { what: "missing drawing", edit: (SHAPE, DRAWN), code: 3, says: &["drawing.svg"], ..FINE },

@@ -172,7 +172,7 @@ fn every_mistake_is_told_with_line_value_and_remedy() {
         (plate("[frames]\nrate = 'fast'\n"), "", Scene, Some(6), &["frames.rate", "fast"]),
         ("name = 'x'\n".into(), "", Scene, None, &["no body", "[[body]]"]),
         ("[[body]]\nname = 'a'\nmaterial = 'pmma'\n".into(), "", Scene, Some(1), &["lacks the key `shape`"]),
-        (own("shape = { rectangle = { min = [0, 0, 0], max = [1, 1] } }\n"), "", Scene, Some(4), &["body[0].shape.rectangle.min", "3"]),
+        (own("shape = { rectangle = { min = [0, 0, 0], max = [1, 1] } }\n"), "", Scene, Some(4), &["body[0].shape.rectangle.min", "[0, 0, 0]", "two numbers"]),
         (own("shape = { rectangle = { min = [1, 0], max = [0, 1] } }\n"), "", Scene, Some(4), &["[1.0, 0.0]", "lower left"]),
         (own("shape = { circle = { radius = -2 } }\n"), "", Scene, Some(4), &["radius", "-2", "above 0"]),
         (own("shape = { circle = { radius = nan } }\n"), "", Scene, Some(4), &["radius", "NaN"]),

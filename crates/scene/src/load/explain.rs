@@ -100,7 +100,10 @@ fn example(array: &str) -> Option<&'static str> {
 
 /// What the deserializer expected, in words; none where it speaks plainly itself.
 fn wanted(message: &str) -> Option<String> {
-    if message.starts_with("wanted exactly 1 element") || message.contains("expected map with a single key") {
+    if message.starts_with("wanted exactly 1 element")
+        || message.contains("expected map with a single key")
+        || message.ends_with("elements in map")
+    {
         return Some("a table with exactly one key, which says what kind it is".into());
     }
     let expected = message.rsplit_once("expected ")?.1.trim_end_matches('.');
