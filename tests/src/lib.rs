@@ -1,5 +1,7 @@
 //! What suites across crates share: the examples as scenes, runs, and paths.
 
+pub mod fuzz;
+
 use fissure_scene::{Frame, LoadError, Point, Scene};
 use fissure_sim::{Simulation, SimulationError};
 use std::ops::ControlFlow;

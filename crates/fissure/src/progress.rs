@@ -1,6 +1,7 @@
 //! How far the work is: a bar on a terminal, plain lines elsewhere, JSON lines for programs.
 
 use crate::report::Report;
+use crate::threads;
 use fissure_scene::{TipRecord, TipState};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
@@ -207,7 +208,9 @@ fn bar(length: u64, template: &str) -> ProgressBar {
     if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style);
     }
-    bar.enable_steady_tick(Duration::from_millis(200));
+    if threads::are_to_be_had() {
+        bar.enable_steady_tick(Duration::from_millis(200));
+    }
     bar
 }
 

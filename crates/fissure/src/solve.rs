@@ -144,7 +144,7 @@ impl Solve {
         let mut progress = SimulationProgress::new(report, self.newest, self.last);
         let frame = self.simulation.frame();
         // The state at the newest frame: what goes on after an interrupt in the middle of the next.
-        let mut state = self.simulation.save();
+        let mut state = self.simulation.save()?;
         // A frame that is there already is held against what was restored.
         self.writer.write_frame(&frame, (self.newest == self.last).then_some(state.as_slice()))?;
         progress.frame(frame.number, &frame.tips);
@@ -173,7 +173,7 @@ impl Solve {
                     frame.number
                 ));
             }
-            state = self.simulation.save();
+            state = self.simulation.save()?;
             // At the end too: the take is then the same whether and when states were written on the way.
             let due = frame.number == self.last || state_written.elapsed() >= STATE_INTERVAL;
             self.writer.write_frame(&frame, due.then_some(state.as_slice()))?;

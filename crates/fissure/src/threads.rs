@@ -24,6 +24,11 @@ pub(crate) fn cannot_start(threads: usize, error: &dyn Display) -> Failure {
     )
 }
 
+/// Whether the system gives one thread more. Libraries that start theirs by themselves do not ask.
+pub(crate) fn are_to_be_had() -> bool {
+    std::thread::Builder::new().spawn(|| ()).is_ok_and(|thread| thread.join().is_ok())
+}
+
 /// Workers that make meshes beside a solver that has `threads`: a few, because each holds a frame.
 pub(crate) fn mesh_workers(threads: usize) -> usize {
     (threads / 2).clamp(1, 8)

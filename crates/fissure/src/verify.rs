@@ -22,7 +22,7 @@ pub(crate) fn verify(arguments: &VerifyArguments, report: &Report) -> Result<Exi
     let mut first_failure = None;
     for (position, case) in cases.iter().enumerate() {
         let bar = report.draws_bars().then(ProgressBar::new_spinner);
-        if let Some(bar) = &bar {
+        if let Some(bar) = bar.as_ref().filter(|_| threads::are_to_be_had()) {
             bar.enable_steady_tick(Duration::from_millis(200));
         }
         report.set_bar(bar.clone());

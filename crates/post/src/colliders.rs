@@ -3,7 +3,7 @@
 use crate::boolean::{material, twice_area};
 use crate::extrude::Extrusion;
 use crate::mesh::{Content, Mesh};
-use crate::post::{PostOptions, object_name};
+use crate::post::{PostError, PostOptions, object_name};
 use crate::snap::Grid;
 use crate::source::{Carried, Slot, SourceEdge};
 use fissure_scene::{Collider, ColliderShape, Frame, Point, Pose, Scene, Vector};
@@ -14,17 +14,26 @@ const DISC_CORNERS: usize = 128;
 const SLAB: (f64, f64) = (4.0, 0.25);
 
 /// One solid per collider, in the order of the scene.
-pub(crate) fn collider_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Vec<Mesh> {
+pub(crate) fn collider_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result<Vec<Mesh>, PostError> {
     let posed = scene.colliders.iter().zip(&frame.colliders).enumerate();
-    posed.map(|(i, (collider, pose))| collider_mesh(scene, frame.time, i as u32, collider, *pose, options)).collect()
+    posed.map(|(i, (collider, pose))| collider_mesh(scene, frame, i as u32, collider, *pose, options)).collect()
 }
 
-fn collider_mesh(scene: &Scene, time: f64, index: u32, collider: &Collider, pose: Pose, options: &PostOptions) -> Mesh {
+fn collider_mesh(
+    scene: &Scene,
+    frame: &Frame,
+    index: u32,
+    collider: &Collider,
+    pose: Pose,
+    options: &PostOptions,
+) -> Result<Mesh, PostError> {
     let ring = ring(&collider.shape, pose, scene);
     let turn = nalgebra::Rotation2::new(pose.angle);
     let placed: Vec<Point> = ring.iter().map(|p| pose.position + turn * p.coords).collect();
-    let (velocity, spin) = motion(collider, time);
+    let (velocity, spin) = motion(collider, frame.time);
     let grid = Grid::covering(&placed);
+    let (low, high) = fissure_scene::bounds(&ring);
+    grid.check(frame.number, &collider.name, (high - low).amax())?;
     let mut arc = 0.0;
     let mut sources = Vec::with_capacity(ring.len());
     for i in 0..ring.len() {
@@ -44,7 +53,6 @@ fn collider_mesh(scene: &Scene, time: f64, index: u32, collider: &Collider, pose
         });
     }
     let shapes = material(&sources);
-    let (low, high) = fissure_scene::bounds(&ring);
     let extrusion = Extrusion {
         grid,
         sources: &sources,
@@ -57,7 +65,7 @@ fn collider_mesh(scene: &Scene, time: f64, index: u32, collider: &Collider, pose
     let content = Content::Solid { area, thickness: options.thickness };
     let mut mesh = Mesh::new(object_name(&collider.name, "collider", index), index, content);
     shapes.iter().for_each(|shape| extrusion.solid(shape, &mut mesh));
-    mesh
+    Ok(mesh)
 }
 
 /// The outline of a collider in its own frame, counter-clockwise [m].

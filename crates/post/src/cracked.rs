@@ -42,6 +42,9 @@ fn body_polygons(
     let faces = cracks.iter().flat_map(|c| c.above.iter().chain(&c.below));
     let grid = Grid::covering(outlines.iter().flat_map(|o| &o.position).chain(faces));
 
+    let (low, high) = scene.bodies[body].region.bounds();
+    grid.check(frame.number, &scene.bodies[body].name, (high - low).amax())?;
+
     let mut rings: Vec<Vec<SourceEdge>> = outlines.iter().map(|o| outline_edges(o, grid)).collect();
     let first = |crack: &CrackFrame| scene.cracks.get(crack.crack as usize).and_then(|c| c.points.first().copied());
     let mut openings: Vec<Vec<SourceEdge>> = cracks.iter().map(|c| opening_edges(c, first(c), grid)).collect();

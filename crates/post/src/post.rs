@@ -83,6 +83,23 @@ pub enum PostError {
         /// What does not fit.
         what: String,
     },
+    /// What is to be shown lies too far from the origin for its size.
+    #[error(
+        "frame {frame}: `{name}` lies up to {reach:e} m from the origin, where single precision, in which meshes are written, has steps of \
+         {step:e} m; it is only {size:e} m large. Let the scene move less far, or about the origin"
+    )]
+    TooFar {
+        /// Frame number.
+        frame: i64,
+        /// Body or collider.
+        name: String,
+        /// Distance from the origin [m].
+        reach: f64,
+        /// Distance of neighbouring numbers there [m].
+        step: f64,
+        /// Size of the body or collider [m].
+        size: f64,
+    },
     /// Contours that touch could not be parted.
     #[error(
         "frame {frame}: the boundary of body `{body}` touches itself at ({x}, {y}) m in a way that could not be parted"
@@ -124,7 +141,7 @@ pub fn post_frame(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result
             Part::Cracked => body_meshes(scene, frame, options, true)?,
             Part::Body => body_meshes(scene, frame, options, false)?,
             Part::Faces => face_meshes(scene, frame, options),
-            Part::Collider => collider_meshes(scene, frame, options),
+            Part::Collider => collider_meshes(scene, frame, options)?,
             Part::Particles => particle_meshes(scene, frame),
         };
         for mesh in &meshes {

@@ -1,5 +1,6 @@
 //! The power-of-two grid on which all plane geometry is done.
 
+use crate::post::PostError;
 use fissure_scene::Point;
 use i_overlay::i_float::int::point::IntPoint;
 
@@ -10,6 +11,9 @@ pub(crate) type GridPoint = IntPoint<i64>;
 const MARGIN: f64 = 1.0 / 4096.0;
 /// Bits of the mantissa of an `f32`, the hidden one included.
 const MANTISSA_BITS: i32 = 24;
+
+/// Steps that something shown must be large.
+const LEAST_STEPS: f64 = 256.0;
 
 /// A square grid through the origin whose step is a power of two.
 ///
@@ -34,6 +38,18 @@ impl Grid {
             power += 1;
         }
         Self { step: 2.0_f64.powi(power - MANTISSA_BITS) }
+    }
+
+    /// Checks that the grid is fine enough to show `name`, which is `size` [m] large.
+    ///
+    /// # Errors
+    /// [`PostError::TooFar`]
+    pub(crate) fn check(self, frame: i64, name: &str, size: f64) -> Result<(), PostError> {
+        let reach = self.step * 2.0_f64.powi(MANTISSA_BITS);
+        if self.step * LEAST_STEPS <= size {
+            return Ok(());
+        }
+        Err(PostError::TooFar { frame, name: name.to_owned(), reach, step: self.step, size })
     }
 
     /// The grid point nearest to `point`.

@@ -2,6 +2,7 @@
 
 use crate::division::{CrackLine, LineEnd};
 use crate::guide::GuideWalk;
+use crate::saved::{self, Fits};
 use fissure_scene::{CrackEnd, End, Point, Scene, TipRecord, TipState, Vector, polyline_length};
 use serde::{Deserialize, Serialize};
 
@@ -72,6 +73,22 @@ impl Tip {
     /// it would have been run.
     pub(crate) fn run(&self) -> f64 {
         self.grown - self.ahead_of_limit.max(0.0)
+    }
+
+    /// Checks a tip that was read.
+    ///
+    /// # Errors
+    /// [`SimulationError::BadState`]
+    fn check(&self) -> Fits {
+        let m = &self.measured;
+        let what = "a tip";
+        saved::finite(what, [&self.ahead_of_limit, &self.grown, &self.run_at_frame])?;
+        saved::finite(what, [&m.j_integral, &m.mode_1, &m.mode_2, &m.kink_angle, &m.equivalent, &m.released])?;
+        saved::finite(what, [&m.fracture_toughness, &m.contour_radius])?;
+        saved::finite(what, self.heading.iter().chain(self.target.iter().flat_map(|p| p.iter())))?;
+        // Both are infinite before the tip has grown.
+        saved::ensure(!self.since_division.is_nan() && !self.balance.is_nan(), "the balance of a tip")?;
+        self.guide.as_ref().map_or(Ok(()), GuideWalk::check)
     }
 
     /// Takes up that the tip has grown by `length` [m].
@@ -173,6 +190,23 @@ impl Crack {
             ends,
             tips: [tip(End::Start, crack.start_live), tip(End::End, crack.end_live)],
         }
+    }
+
+    /// Checks a crack that was read, one of `count`, against its scene.
+    ///
+    /// # Errors
+    /// [`SimulationError::BadState`]
+    pub(crate) fn check(&self, scene: &Scene, count: usize) -> Fits {
+        saved::below("a crack", [self.body], scene.bodies.len())?;
+        let (low, high) = scene.bodies[self.body as usize].region.bounds();
+        // A mouth may stick out by rounding.
+        let margin = Vector::repeat(scene.cell_size);
+        let is_inside = |p: &Point| *p >= low - margin && *p <= high + margin;
+        let has_length = self.points.len() >= 2 && self.points.windows(2).all(|w| w[0] != w[1]);
+        saved::ensure(has_length && self.points.iter().all(is_inside), "the line of a crack")?;
+        let trunk = |end: &CrackEnd| if let CrackEnd::Junction { crack } = end { Some(*crack) } else { None };
+        saved::below("the end of a crack", self.ends.iter().filter_map(trunk), count)?;
+        self.tips.iter().flatten().try_for_each(Tip::check)
     }
 
     /// Position of an end at rest [m].

@@ -72,6 +72,9 @@ pub enum SimulationError {
         /// What happened.
         cause: String,
     },
+    /// The state cannot be saved.
+    #[error("the state cannot be saved: {0}; the frames so far stay valid")]
+    NotSaved(String),
     /// A saved state does not belong to this scene or version.
     #[error("the saved state cannot be used: {0}")]
     BadState(String),

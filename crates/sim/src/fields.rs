@@ -4,6 +4,7 @@
 //! of (crack, side) that particles cross on the way to the node; their number is not limited, and a scene without a crack has none.
 
 use crate::division::CrossedSet;
+use crate::saved::{self, Fits};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -20,6 +21,23 @@ impl Fields {
     /// No further fields on `nodes` nodes.
     pub(crate) fn new(nodes: usize) -> Self {
         Self { nodes, of_node: BTreeMap::new(), node_of: Vec::new() }
+    }
+
+    /// Checks fields that were read against so many `nodes` and `cracks`.
+    ///
+    /// # Errors
+    /// [`SimulationError::BadState`](crate::SimulationError::BadState)
+    pub(crate) fn check(&self, nodes: usize, cracks: usize) -> Fits {
+        saved::ensure(self.nodes == nodes, "its number of nodes")?;
+        saved::below("a field", self.node_of.iter().copied(), nodes)?;
+        for (&node, fields) in &self.of_node {
+            for (crossed, field) in fields {
+                saved::below("a field", crossed.iter().map(|(crack, _)| *crack), cracks)?;
+                let further = (*field as usize).checked_sub(nodes).and_then(|further| self.node_of.get(further));
+                saved::ensure(further == Some(&node), "a field of a node")?;
+            }
+        }
+        Ok(())
     }
 
     /// Number of fields of all nodes together.

@@ -1,5 +1,6 @@
 //! Tips on drawn paths.
 
+use crate::saved::{self, Fits};
 use fissure_scene::{Guide, Point, Vector};
 use serde::{Deserialize, Serialize};
 
@@ -24,6 +25,17 @@ impl GuideWalk {
     /// A tip at the beginning of `guide`.
     pub(crate) fn new(guide: &Guide) -> Self {
         Self { guide: guide.clone(), walked: 0.0 }
+    }
+
+    /// Checks a guide that was read.
+    ///
+    /// # Errors
+    /// [`SimulationError::BadState`](crate::SimulationError::BadState)
+    pub(crate) fn check(&self) -> Fits {
+        let points = self.guide.points.iter().flat_map(|p| p.iter());
+        let schedule = self.guide.schedule.points.iter().flat_map(|(time, fraction)| [time, fraction]);
+        saved::finite("a guide", points.chain(schedule).chain([&self.guide.strength, &self.walked]))?;
+        saved::ensure(self.guide.points.len() >= 2, "the line of a guide")
     }
 
     /// How much the guide decides the direction, 0 to 1.

@@ -197,7 +197,7 @@ pub(crate) trait Solver: std::fmt::Debug + Send {
     fn crack_frames(&self, cracks: &[Crack]) -> Vec<CrackFrame>;
 
     /// The whole state, for going on later.
-    fn save(&self) -> Vec<u8>;
+    fn save(&self) -> Result<Vec<u8>, SimulationError>;
 }
 
 /// A moment of a solver that can be looked at.

@@ -73,13 +73,13 @@ impl Picture {
 
 /// Why an image cannot be read.
 enum Refusal {
-    Malformed(png::DecodingError),
+    Malformed(String),
     TooLarge { columns: u32, rows: u32 },
 }
 
 impl From<png::DecodingError> for Refusal {
     fn from(cause: png::DecodingError) -> Self {
-        Self::Malformed(cause)
+        Self::Malformed(cause.to_string())
     }
 }
 
@@ -98,6 +98,11 @@ fn decode(bytes: &[u8], most_pixels: u64) -> Result<(usize, Vec<f64>), Refusal> 
         pixels if pixels <= most_pixels => decoder.read_info()?,
         _ => return Err(Refusal::TooLarge { columns, rows }),
     };
+    // The decoder relies on whole entries, of which there are at most 256.
+    let palette = reader.info().palette.as_ref().map_or(0, |palette| palette.len());
+    if !palette.is_multiple_of(3) || palette > 3 * 256 {
+        return Err(Refusal::Malformed(format!("its palette has {palette} bytes")));
+    }
     let mut samples = vec![0; reader.output_buffer_size().ok_or(Refusal::TooLarge { columns, rows })?];
     let frame = reader.next_frame(&mut samples)?;
     let mut light = Vec::with_capacity(frame.width as usize * frame.height as usize);

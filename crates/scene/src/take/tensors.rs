@@ -264,7 +264,36 @@ pub fn frame_from_bytes(bytes: &[u8]) -> Result<Frame, String> {
     if lengths.iter().chain([&p.deformation_gradient.len(), &p.cauchy_stress.len()]).any(|&length| length != p.len()) {
         return Err("its particle tensors differ in length".into());
     }
+    check_numbers(&frame)?;
     Ok(frame)
+}
+
+/// Checks that what has a place in a frame has a finite one. What was measured at tips may be anything.
+fn check_numbers(frame: &Frame) -> Result<(), String> {
+    let p = &frame.particles;
+    let points = [&p.rest, &p.position].into_iter().flatten();
+    let particles = points.flat_map(|x| x.iter()).chain(p.velocity.iter().flatten());
+    let tensors = [&p.deformation_gradient, &p.cauchy_stress].into_iter().flatten().flatten();
+    let outlines = frame.outlines.iter().flat_map(|o| {
+        let points = [&o.rest, &o.position].into_iter().flatten();
+        points.flat_map(|x| x.iter()).chain(o.velocity.iter().flatten())
+    });
+    let cracks = frame.cracks.iter().flat_map(|c| {
+        let points = [&c.rest, &c.above, &c.below].into_iter().flatten();
+        let velocities = [&c.above_velocity, &c.below_velocity].into_iter().flatten().flatten();
+        points.flat_map(|x| x.iter()).chain(velocities)
+    });
+    let colliders = frame.colliders.iter().flat_map(|pose| pose.position.iter().chain([&pose.angle]));
+    let finite = |mut numbers: Box<dyn Iterator<Item = &f64> + '_>| numbers.all(|x| x.is_finite());
+    let kinds: [(&str, Box<dyn Iterator<Item = &f64> + '_>); 5] = [
+        ("its time", Box::new(std::iter::once(&frame.time))),
+        ("a particle", Box::new(particles.chain(tensors))),
+        ("an outline", Box::new(outlines)),
+        ("a crack", Box::new(cracks)),
+        ("a collider", Box::new(colliders)),
+    ];
+    let what = kinds.into_iter().find_map(|(what, numbers)| (!finite(numbers)).then_some(what));
+    what.map_or(Ok(()), |what| Err(format!("{what} has a number that is not finite")))
 }
 
 fn end_number(end: CrackEnd) -> i64 {
@@ -299,8 +328,16 @@ impl Reader<'_> {
         }
         Ok(tensor.data().as_chunks::<N>().0.iter().map(|bytes| of(*bytes)).collect())
     }
+    /// Numbers in groups of `N`: the components of vectors and matrices.
+    fn groups<const N: usize>(&self, name: &str) -> Result<Vec<[f64; N]>, String> {
+        let values = self.f64s(name)?;
+        let (groups, rest) = values.as_chunks::<N>();
+        if rest.is_empty() { Ok(groups.to_vec()) } else { Err(format!("its tensor `{name}` is not in groups of {N}")) }
+    }
     fn one<const N: usize, T>(&self, name: &str, dtype: Dtype, of: fn([u8; N]) -> T) -> Result<T, String> {
-        self.values(name, dtype, of)?.pop().ok_or_else(|| format!("its tensor `{name}` is empty"))
+        let [value] =
+            self.values(name, dtype, of)?.try_into().map_err(|_| format!("its tensor `{name}` is no single number"))?;
+        Ok(value)
     }
     fn f64s(&self, name: &str) -> Result<Vec<f64>, String> {
         self.values(name, Dtype::F64, f64::from_le_bytes)
@@ -312,22 +349,23 @@ impl Reader<'_> {
         self.values(name, Dtype::U32, u32::from_le_bytes)
     }
     fn points(&self, name: &str) -> Result<Vec<Point>, String> {
-        Ok(self.f64s(name)?.as_chunks::<2>().0.iter().map(|&p| Point::from(p)).collect())
+        Ok(self.groups(name)?.into_iter().map(|p: [f64; 2]| Point::from(p)).collect())
     }
     fn vectors(&self, name: &str) -> Result<Vec<Vector>, String> {
-        Ok(self.f64s(name)?.as_chunks::<2>().0.iter().map(|&v| Vector::from(v)).collect())
+        Ok(self.groups(name)?.into_iter().map(|v: [f64; 2]| Vector::from(v)).collect())
     }
     fn matrices(&self, name: &str) -> Result<Vec<Matrix>, String> {
-        Ok(self.f64s(name)?.as_chunks::<4>().0.iter().map(|&[a, b, c, d]| Matrix::new(a, b, c, d)).collect())
+        Ok(self.groups(name)?.into_iter().map(|[a, b, c, d]| Matrix::new(a, b, c, d)).collect())
     }
 
-    /// The ranges that `name` gives, checked to be rising and within `length`.
+    /// The ranges that `name` gives, checked to be rising and to divide all of `length`.
     fn ranges(&self, name: &str, length: usize) -> Result<Vec<std::ops::Range<usize>>, String> {
         let offsets = self.values(name, Dtype::I64, i64::from_le_bytes)?;
+        let is_whole = offsets.first() == Some(&0) && offsets.last() == i64::try_from(length).ok().as_ref();
         let range = |w: &[i64]| Some(usize::try_from(w[0]).ok()?..usize::try_from(w[1]).ok()?);
         let ranges: Option<Vec<_>> =
             offsets.windows(2).map(|w| range(w).filter(|r| r.start <= r.end && r.end <= length)).collect();
-        ranges.ok_or_else(|| format!("its tensor `{name}` does not divide {length} points"))
+        ranges.filter(|_| is_whole).ok_or_else(|| format!("its tensor `{name}` does not divide {length} points"))
     }
 
     fn outlines(&self) -> Result<Vec<OutlineFrame>, String> {

@@ -4,6 +4,7 @@ use super::{FieldVectors, NONE, Run, Total};
 use crate::crack::Crack;
 use crate::crossing::Side;
 use crate::grid::GridRow;
+use crate::saved::{self, Fits};
 use fissure_scene::{CrackEnd, Matrix, Point, Vector};
 use serde::{Deserialize, Serialize};
 
@@ -45,6 +46,28 @@ impl CutParticles {
             misfit: Vec::new(),
             strained: Vec::new(),
         }
+    }
+
+    /// Checks rows that were read against so many `particles` and `fields`.
+    ///
+    /// # Errors
+    /// [`SimulationError::BadState`](crate::SimulationError::BadState)
+    pub(super) fn check(&self, particles: usize, fields: usize) -> Fits {
+        let rows = self.particle.len();
+        saved::ensure(self.row.len() == particles, "its number of particles")?;
+        saved::below("a row", self.particle.iter().copied(), particles)?;
+        let of_particle = |(row, &particle): (usize, &u32)| self.row[particle as usize] as usize == row;
+        saved::ensure(self.particle.iter().enumerate().all(of_particle), "a row of a particle")?;
+        saved::below("a particle", self.row.iter().copied().filter(|&row| row != NONE), rows)?;
+        let is_divided = self.first.len() == rows + 1
+            && self.first[0] == 0
+            && self.first[rows] as usize == self.entries.len()
+            && self.first.is_sorted();
+        saved::ensure(is_divided && self.misfit.len() == rows, "the division of its rows")?;
+        saved::below("a stencil", self.entries.iter().map(|e| e.field), fields)?;
+        saved::finite("a stencil", self.entries.iter().flat_map(|e| [&e.weight, &e.gradient[0], &e.gradient[1]]))?;
+        saved::finite("a row", self.misfit.iter().flatten())?;
+        saved::below("a strained row", self.strained.iter().copied(), rows)
     }
 
     /// Entries of a particle, if it is on the general path.
@@ -135,6 +158,18 @@ pub(super) struct Probe {
 }
 
 impl Probe {
+    /// Checks a probe that was read against so many `fields`.
+    ///
+    /// # Errors
+    /// [`SimulationError::BadState`](crate::SimulationError::BadState)
+    pub(super) fn check(&self, fields: usize) -> Fits {
+        saved::finite(
+            "a probe",
+            self.rest.iter().chain(self.nudged.iter()).chain(self.entries.iter().map(|(_, w)| w)),
+        )?;
+        saved::below("a probe", self.entries.iter().map(|(field, _)| *field), fields)
+    }
+
     /// Value of a field vector at the probe.
     pub(super) fn value(&self, u: &FieldVectors) -> Vector {
         let mut value = Vector::zeros();

@@ -26,6 +26,7 @@ use crate::fields::Fields;
 use crate::grid::{Grid, Walker};
 use crate::kernel;
 use crate::particles::Particles;
+use crate::saved::{self, Fits};
 use crate::solver::{Handover, Observed, Release, Solver, SolverEnergies};
 use boundary::{Constraint, PointForce};
 use contact::ContactPair;
@@ -170,10 +171,44 @@ impl Total {
         state: &[u8],
     ) -> Result<Self, SimulationError> {
         let mut solver = Self::new(scene, particles, cracks)?;
-        solver.state = crate::saved::from_bytes(state)?;
+        let state: State = saved::from_bytes(state)?;
+        solver.check(&state, cracks)?;
+        solver.state = state;
         solver.division = Self::division_of(scene, cracks, &solver.state.cut_at);
         solver.refresh(cracks)?;
         Ok(solver)
+    }
+
+    /// Checks a state that was read against the lattice and the cracks.
+    fn check(&self, state: &State, cracks: &[Crack]) -> Fits {
+        let (nodes, fields) = (self.grid.len(), state.fields.len());
+        state.fields.check(nodes, cracks.len())?;
+        for values in [&state.mass].into_iter().chain(&state.displacement).chain(&state.velocity) {
+            saved::ensure(values.len() == fields, "its number of fields")?;
+            saved::finite("a field", values)?;
+        }
+        state.cut.check(self.particles.len(), fields)?;
+        saved::ensure(state.runs.len() == self.grid.rows(), "its number of rows")?;
+        for (index, runs) in state.runs.iter().enumerate() {
+            let row = self.grid.row(index);
+            let above = self.grid.row_index(row.row + 1).map_or(0..0, |above| self.grid.row(above).nodes);
+            saved::ensure(runs.iter().all(|run| run.lies_in(&row.nodes, &above)), "a run of cells")?;
+        }
+        saved::below("a run of cells", state.runs.iter().flatten().map(|run| run.material), self.elastic.len())?;
+        let rings = state.outlines.len() == self.state.outlines.len() && state.outlines.iter().all(|r| r.len() >= 3);
+        saved::ensure(rings, "an outline")?;
+        let same_points =
+            |(faces, crack): (&[Vec<Probe>; 2], &Crack)| faces.iter().all(|f| f.len() == crack.points.len());
+        let faces = state.faces.len() == cracks.len() && state.faces.iter().zip(cracks).all(same_points);
+        saved::ensure(faces, "the faces of a crack")?;
+        let probes = state.outlines.iter().flatten().chain(state.faces.iter().flatten().flatten());
+        probes.clone().try_for_each(|probe| probe.check(fields))?;
+        state.ties.check(fields, nodes, cracks.len())?;
+        tie::check_tips(state.cut_at.keys(), cracks.len())?;
+        let ((low, high), margin) = (fissure_scene::bounds(&self.particles.rest), Vector::repeat(self.grid.cell_size));
+        let is_near = |place: &Point| *place >= low - margin && *place <= high + margin;
+        saved::ensure(state.cut_at.values().all(is_near), "the place of a tip")?;
+        saved::finite("its last step", [&state.external_work, &state.last_step])
     }
 
     fn division_of(scene: &Scene, cracks: &[Crack], cut_at: &BTreeMap<TipKey, Point>) -> Division {
@@ -504,8 +539,8 @@ impl Solver for Total {
         self.frames_of_cracks(cracks)
     }
 
-    fn save(&self) -> Vec<u8> {
-        crate::saved::to_bytes(&self.state)
+    fn save(&self) -> Result<Vec<u8>, SimulationError> {
+        saved::to_bytes(&self.state)
     }
 }
 

@@ -24,6 +24,15 @@ pub(super) struct Run {
 }
 
 impl Run {
+    /// Whether its nodes are among those of two rows.
+    pub(super) fn lies_in(&self, lower: &Range<usize>, upper: &Range<usize>) -> bool {
+        let within = |first: u32, nodes: &Range<usize>| {
+            let end = first as usize + self.count as usize + 1;
+            nodes.start <= first as usize && end <= nodes.end
+        };
+        within(self.lower, lower) && within(self.upper, upper)
+    }
+
     /// Whether its cells have the lower left node `node` among them.
     pub(super) fn holds(&self, node: usize) -> bool {
         (self.lower as usize..(self.lower + self.count) as usize).contains(&node)

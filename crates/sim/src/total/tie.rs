@@ -23,6 +23,7 @@ use crate::crack::{Crack, ENDS, slot};
 use crate::division::{CrossedSet, WINDOW, facing};
 use crate::elastic::Elastic;
 use crate::kernel;
+use crate::saved::{self, Fits};
 use crate::solver::Release;
 use fissure_scene::{CrackEnd, End, Point, TipDivision, TipState, Vector};
 use serde::{Deserialize, Serialize};
@@ -155,11 +156,41 @@ impl Tie {
     }
 }
 
+/// Checks that tips are ends of one of `cracks` cracks.
+///
+/// # Errors
+/// [`SimulationError::BadState`](crate::SimulationError::BadState)
+pub(super) fn check_tips<'a>(tips: impl Iterator<Item = &'a TipKey> + Clone, cracks: usize) -> Fits {
+    saved::below("a tip", tips.clone().map(|(crack, _)| *crack), cracks)?;
+    saved::below("a tip", tips.map(|(_, end)| u32::from(*end)), ENDS.len())
+}
+
 pub(super) fn key(crack: usize, end: End) -> TipKey {
     (crack as u32, slot(end) as u8)
 }
 
 impl Ties {
+    /// Checks ties that were read against so many `fields`, `nodes` and `cracks`.
+    ///
+    /// # Errors
+    /// [`SimulationError::BadState`](crate::SimulationError::BadState)
+    pub(super) fn check(&self, fields: usize, nodes: usize, cracks: usize) -> Fits {
+        check_tips(self.of_tip.keys(), cracks)?;
+        saved::below("a tie", self.all().flat_map(|tie| [tie.first, tie.second]), fields)?;
+        saved::below("a tie", self.all().map(|tie| tie.node), nodes)?;
+        for tie in self.all() {
+            let numbers = [&tie.scale, &tie.stiffness, &tie.inertia, &tie.drag, &tie.dragged];
+            saved::finite("a tie", numbers.into_iter().chain(tie.place.iter()).chain(tie.rest.iter()))?;
+        }
+        saved::below("the node of a tie", self.at_node.keys().copied(), nodes)?;
+        for group in self.at_node.values() {
+            saved::below("coupled ties", group.fields.iter().copied(), fields)?;
+            saved::ensure(group.mixing.len() == group.fields.len().pow(2), "a coupling of ties")?;
+            saved::finite("a coupling of ties", &group.mixing)?;
+        }
+        Ok(())
+    }
+
     fn all(&self) -> impl Iterator<Item = &Tie> {
         self.of_tip.values().flatten()
     }

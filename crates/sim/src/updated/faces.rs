@@ -3,6 +3,7 @@
 use super::Updated;
 use crate::crack::{Crack, slot};
 use crate::crossing::Side;
+use crate::saved::{self, Fits};
 use fissure_scene::{CrackEnd, CrackFrame, End, Matrix, OutlineFrame, Point, Vector};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -32,6 +33,19 @@ impl CrackNow {
         }
     }
 
+    /// Whether every list has one entry per crack point.
+    pub(super) fn is_even(&self) -> bool {
+        let lists = [self.position.len(), self.faces[0].len(), self.faces[1].len()];
+        let velocities = [self.velocities[0].len(), self.velocities[1].len()];
+        lists.into_iter().chain(velocities).all(|length| length == self.rest.len())
+    }
+
+    /// Every number that changes.
+    pub(super) fn numbers(&self) -> impl Iterator<Item = &f64> {
+        let points = self.position.iter().chain(self.faces.iter().flatten()).flat_map(|p| p.iter());
+        points.chain(self.velocities.iter().flatten().flatten())
+    }
+
     /// Takes the place and the motion of the faces of `frame`, which has the same points.
     pub(super) fn take_over(&mut self, frame: &CrackFrame) {
         self.position = frame.above.iter().zip(&frame.below).map(|(a, b)| nalgebra::center(a, b)).collect();
@@ -48,6 +62,19 @@ pub(super) struct Tracer {
     pub(super) velocity: Vector,
     /// The end of a crack face that this vertex is: (crack, face 0 above or 1 below, end 0 first or 1 last).
     pub(super) face: Option<(u32, u8, u8)>,
+}
+
+impl Tracer {
+    /// Checks a tracer that was read against so many `cracks`.
+    ///
+    /// # Errors
+    /// [`SimulationError::BadState`](crate::SimulationError::BadState)
+    pub(super) fn check(&self, cracks: usize) -> Fits {
+        saved::finite("an outline", self.rest.iter().chain(self.position.iter()).chain(&self.velocity))?;
+        let Some((crack, side, end)) = self.face else { return Ok(()) };
+        saved::below("an outline", [crack], cracks)?;
+        saved::below("an outline", [u32::from(side), u32::from(end)], 2)
+    }
 }
 
 /// The faces, in the order of [`CrackNow::faces`].

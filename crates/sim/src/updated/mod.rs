@@ -27,6 +27,7 @@ use crate::elastic::Elastic;
 use crate::grid::Grid;
 use crate::kernel;
 use crate::particles::Particles;
+use crate::saved::{self, Fits};
 use crate::solver::{Handover, Observed, Solver, SolverEnergies};
 use contact::ContactPair;
 use faces::{CrackNow, Tracer};
@@ -64,6 +65,42 @@ struct State {
     outlines: Vec<Vec<Tracer>>,
     /// Work done by loads, gravity, supports and colliders so far [J/m].
     external_work: f64,
+}
+
+/// Whether particles carry an affine velocity.
+fn has_affine(scene: &Scene) -> bool {
+    scene.solver.transfer == Transfer::Apic
+}
+
+/// Whether particles carry a plastic part.
+fn is_plastic(scene: &Scene) -> bool {
+    scene.materials.iter().any(|m| m.plasticity.is_some())
+}
+
+impl State {
+    /// Checks a state that was read against its scene, which has so many `particles`, and the cracks.
+    fn check(&self, scene: &Scene, particles: usize, cracks: &[Crack]) -> Fits {
+        let counts = [self.points.len(), self.affine.len(), self.plastic.len()];
+        let expected =
+            [particles, if has_affine(scene) { particles } else { 0 }, if is_plastic(scene) { particles } else { 0 }];
+        saved::ensure(counts == expected, "its number of particles")?;
+        for point in &self.points {
+            let numbers = point.position.iter().chain(&point.velocity).chain(&point.elastic_gradient);
+            saved::finite("a particle", numbers)?;
+        }
+        saved::finite("a particle", self.affine.iter().flatten())?;
+        for part in &self.plastic {
+            saved::finite("a particle", part.gradient.iter().chain([&part.hardening]))?;
+        }
+        let fits = |(now, crack): (&CrackNow, &Crack)| now.rest == crack.points && now.is_even();
+        let same = self.cracks.len() == cracks.len() && self.cracks.iter().zip(cracks).all(fits);
+        saved::ensure(same, "the place of a crack")?;
+        self.cracks.iter().try_for_each(|now| saved::finite("a crack", now.numbers()))?;
+        let rings: usize = scene.bodies.iter().map(|body| 1 + body.region.holes.len()).sum();
+        saved::ensure(self.outlines.len() == rings && self.outlines.iter().all(|ring| ring.len() >= 3), "an outline")?;
+        self.outlines.iter().flatten().try_for_each(|tracer| tracer.check(cracks.len()))?;
+        saved::finite("its work", [&self.external_work])
+    }
 }
 
 /// The updated Lagrangian solver.
@@ -115,11 +152,10 @@ impl Updated {
             .iter()
             .map(|&position| MaterialPoint { position, velocity: Vector::zeros(), elastic_gradient: Matrix::zeros() })
             .collect();
-        let is_plastic = scene.materials.iter().any(|m| m.plasticity.is_some());
         let state = State {
             points,
-            affine: if scene.solver.transfer == Transfer::Apic { vec![Matrix::zeros(); count] } else { Vec::new() },
-            plastic: if is_plastic { vec![PlasticPart::NONE; count] } else { Vec::new() },
+            affine: if has_affine(scene) { vec![Matrix::zeros(); count] } else { Vec::new() },
+            plastic: if is_plastic(scene) { vec![PlasticPart::NONE; count] } else { Vec::new() },
             cracks: cracks.iter().map(CrackNow::at_rest).collect(),
             outlines: Vec::new(),
             external_work: 0.0,
@@ -166,14 +202,8 @@ impl Updated {
         cracks: &[Crack],
         bytes: &[u8],
     ) -> Result<Self, SimulationError> {
-        let state: State = crate::saved::from_bytes(bytes)?;
-        let count = particles.len();
-        let fits = |length: usize| length == count || length == 0;
-        let same_cracks = state.cracks.len() == cracks.len()
-            && state.cracks.iter().zip(cracks).all(|(now, crack)| now.rest == crack.points);
-        if state.points.len() != count || !fits(state.affine.len()) || !fits(state.plastic.len()) || !same_cracks {
-            return Err(SimulationError::BadState("it belongs to another scene".into()));
-        }
+        let state: State = saved::from_bytes(bytes)?;
+        state.check(scene, particles.len(), cracks)?;
         Self::around(scene, particles, state)
     }
 
@@ -360,7 +390,7 @@ impl Solver for Updated {
         self.frames_of_cracks(cracks)
     }
 
-    fn save(&self) -> Vec<u8> {
-        crate::saved::to_bytes(&self.state)
+    fn save(&self) -> Result<Vec<u8>, SimulationError> {
+        saved::to_bytes(&self.state)
     }
 }

@@ -300,7 +300,8 @@ fn a_turned_body_is_not_in_contact_with_itself() {
     let mut closed = 0;
     // A gap and an overlap of 1e-6 m, much less than the 0.1 m between the particles on the two sides: above is −x after the turn.
     for (shift, expected) in [(-1e-6, false), (1e-6, true)] {
-        let mut shifted = Updated::restore(&scene, solver.particles.clone(), &run.cracks, &solver.save()).unwrap();
+        let mut shifted =
+            Updated::restore(&scene, solver.particles.clone(), &run.cracks, &solver.save().unwrap()).unwrap();
         for p in 0..shifted.particles.len() {
             let rest = shifted.particles.rest[p];
             if rest.y > 0.53 + rest.x * (0.08 / 0.83) {
@@ -375,12 +376,12 @@ fn a_saved_state_goes_on_bit_for_bit() {
     let mut run = Run::new(&scene);
     let time_step = 0.3 * run.solver.stable_time_step();
     run.steps(15, time_step);
-    let bytes = run.solver.save();
+    let bytes = run.solver.save().unwrap();
     let restored = Updated::restore(&scene, Arc::new(Particles::fill(&scene).unwrap()), &run.cracks, &bytes).unwrap();
     let mut other = Run { solver: restored, cracks: run.cracks.clone(), time: run.time };
     run.steps(15, time_step);
     other.steps(15, time_step);
-    assert_eq!(run.solver.save(), other.solver.save());
+    assert_eq!(run.solver.save().unwrap(), other.solver.save().unwrap());
     assert!(Updated::restore(&scene, Arc::new(Particles::fill(&scene).unwrap()), &run.cracks, &bytes[..99]).is_err());
 }
 
@@ -394,7 +395,7 @@ fn one_and_two_threads_give_the_same_bytes() {
             assert!(run.solver.particles.len() > stencils::PARALLEL_PARTICLES, "the threads have something to do");
             let time_step = 0.3 * run.solver.stable_time_step();
             run.steps(20, time_step);
-            run.solver.save()
+            run.solver.save().unwrap()
         })
     });
     assert!(states[0] == states[1]);

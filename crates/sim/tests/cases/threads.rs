@@ -23,7 +23,8 @@ fn two_threads_give_the_bytes_of_one() {
         pool.install(|| {
             let mut simulation = Simulation::new(&scene).unwrap();
             let length = simulation.frame().tips[0].length;
-            let frames: Vec<_> = (0..2).map(|_| (run(&mut simulation, 1).unwrap(), simulation.save())).collect();
+            let frames: Vec<_> =
+                (0..2).map(|_| (run(&mut simulation, 1).unwrap(), simulation.save().unwrap())).collect();
             assert!(frames[1].0.tips[0].length > length + 3.0 * scene.cell_size, "the crack grows");
             frames
         })
