@@ -642,10 +642,10 @@ const TABLE: &[Bad] = &[
         ..FINE
     },
     Bad {
-        what: "open outline",
+        what: "outline without area",
         edit: (SHAPE, DRAWN),
-        drawing: r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 20 20"><path id="plate" d="M0 0 H20 V20 H0"/></svg>"#,
-        says: &["plate", "open"],
+        drawing: r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 20 20"><path id="plate" d="M0 0 H20 H5"/></svg>"#,
+        says: &["plate", "no area"],
         ..FINE
     },
     Bad {

@@ -61,19 +61,29 @@ impl<'s> Selector<'s> {
         }
     }
 
-    /// The pieces of the outlines that make up a selected edge, the material to their left; of other selections none.
+    /// The pieces of the outlines that are selected, the material to their left: of an edge its own, of other selections those that lie in them.
     pub(crate) fn pieces(&self, scene: &Scene) -> Vec<[Point; 2]> {
-        let side = match self {
-            Self::Side(side) => side,
-            Self::Outline(stretches) => return stretches.iter().map(|s| [s.from, s.to]).collect(),
-            _ => return Vec::new(),
-        };
+        if let Self::Outline(stretches) = self {
+            return stretches.iter().map(|s| [s.from, s.to]).collect();
+        }
         let slack = 1e-6 * scene.cell_size;
-        let is_on = |p: Point| side.depth(p).abs() <= slack;
-        let of = scene.bodies.iter().enumerate().filter(|(index, _)| side.is_of(*index));
-        let rings = of.flat_map(|(_, body)| body.region.rings());
-        let edges = rings.flat_map(|ring| (0..ring.len()).map(move |i| [ring[i], ring[(i + 1) % ring.len()]]));
-        edges.filter(|[a, b]| is_on(*a) && is_on(*b)).collect()
+        let edges = scene.bodies.iter().enumerate().flat_map(|(index, body)| {
+            let of =
+                |ring: &[Point]| (0..ring.len()).map(|i| [ring[i], ring[(i + 1) % ring.len()]]).collect::<Vec<_>>();
+            body.region.rings().flat_map(of).map(move |edge| (index, edge))
+        });
+        edges.filter(|&(body, edge)| self.has_piece(body, edge, slack)).map(|(_, edge)| edge).collect()
+    }
+
+    /// Whether the piece from `a` to `b` of a ring of `body` is selected, to within `slack` [m].
+    fn has_piece(&self, body: usize, [a, b]: [Point; 2], slack: f64) -> bool {
+        let within = |p: Point| match self {
+            Self::Side(side) => side.is_of(body) && side.depth(p).abs() <= slack,
+            Self::Region { region, .. } => region.contains(p) || distance_to_rings(region, p) <= slack,
+            Self::Near { points, radius } => points.iter().any(|q| (p - q).norm() <= radius + slack),
+            Self::All | Self::Bodies(_) | Self::Outline(_) => self.selects(p, body, 0.0, slack),
+        };
+        [a, nalgebra::center(&a, &b), b].into_iter().all(within)
     }
 }
 

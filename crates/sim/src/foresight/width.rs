@@ -50,7 +50,8 @@ mod tests {
                 let mut region = rectangle([0.0, 0.0], [w, h]);
                 let turn = nalgebra::Rotation2::new(angle);
                 region.exterior.iter_mut().for_each(|p| *p = turn * *p);
-                assert!((width(&region) - f64::min(w, h)).abs() < 1e-12, "{w} {h} {angle}");
+                // Of a square it is half the perimeter less a root of zero: round-off of 1e-16 becomes 1e-8.
+                assert!((width(&region) - f64::min(w, h)).abs() < 1e-7, "{w} {h} {angle}");
             }
         }
         let circle = |r: f64, way: f64| -> Vec<Point> {
