@@ -118,6 +118,8 @@ pub(crate) struct Division {
     lines: Vec<Line>,
     cell_size: f64,
     particle_spacing: f64,
+    /// How far from its segments a crack may divide pairs, along each axis [cells].
+    reach: f64,
     buckets: HashMap<(i64, i64), Vec<(u32, u32)>>,
     has_junctions: bool,
 }
@@ -146,12 +148,34 @@ impl Division {
             }
         }
         let has_junctions = lines.iter().any(|l| l.has_junction);
-        Self { lines, cell_size, particle_spacing, buckets, has_junctions }
+        Self { lines, cell_size, particle_spacing, reach, buckets, has_junctions }
     }
 
     fn bucket(&self, point: Point) -> &[(u32, u32)] {
         let key = ((point.x / self.cell_size).floor() as i64, (point.y / self.cell_size).floor() as i64);
         self.buckets.get(&key).map_or(&[], Vec::as_slice)
+    }
+
+    /// Distance within which [`Division::segments_around`] misses nothing [m].
+    pub(crate) fn surroundings(&self) -> f64 {
+        (self.reach + 1.0) * self.cell_size
+    }
+
+    /// Segments of a crack around `point`, rising: all within [`Division::surroundings`], some beside, and always the first and the last one, whose ends may
+    /// have moved on since the division was made.
+    pub(crate) fn segments_around(&self, crack: u32, point: Point) -> Vec<usize> {
+        let Some(index) = self.lines.iter().position(|line| line.crack == crack) else { return Vec::new() };
+        let of = &self.lines[index].of;
+        let mut segments: Vec<usize> = vec![0, of.iter().max().map_or(0, |&last| last as usize)];
+        for (i, j) in (-1..=1).flat_map(|i| (-1..=1).map(move |j| (i, j))) {
+            let bucket = self.bucket(point + Vector::new(f64::from(i), f64::from(j)) * self.cell_size);
+            let first = bucket.partition_point(|&(line, _)| (line as usize) < index);
+            let own = bucket[first..].iter().take_while(|&&(line, _)| line as usize == index);
+            segments.extend(own.map(|&(_, segment)| of[segment as usize] as usize));
+        }
+        segments.sort_unstable();
+        segments.dedup();
+        segments
     }
 
     /// Whether a particle at `point` may have a divided pair at all.
@@ -192,6 +216,9 @@ impl Division {
 
     /// What the line from `particle` to `node` crosses.
     pub(crate) fn crossed(&self, particle: Point, node: Point) -> CrossedSet {
+        if !self.is_near(particle) {
+            return CrossedSet::new();
+        }
         self.shares(particle, node, 0.0)
             .into_iter()
             .max_by(|a, b| a.fraction.total_cmp(&b.fraction))

@@ -77,19 +77,23 @@ impl Total {
                 let Some((crack, side)) = facing(&first.0, &second.0) else { continue };
                 let (above, below) = if side == Side::Above { (first.1, second.1) } else { (second.1, first.1) };
                 let Some(line) = cracks.get(crack as usize) else { continue };
-                let place = self.grid.position(node);
-                // Around a vertex both its segments are equally near, up to round-off: the first one counts.
-                let clearly = 1e-9 * self.grid.cell_size;
-                let (mut nearest, mut segment) = (f64::INFINITY, 0);
-                for (s, w) in line.points.windows(2).enumerate() {
-                    let distance = crate::particles::distance_to_segment(place, w[0], w[1]);
-                    if distance < nearest - clearly {
-                        (nearest, segment) = (distance, s);
-                    }
-                }
+                let segment = self.nearest_segment(crack, line, self.grid.position(node));
                 pairs.push(ContactPair { above, below, crack, segment: segment as u32, force: [0.0; 2] });
             }
         }
+    }
+
+    /// The segment of a crack nearest to `place`.
+    fn nearest_segment(&self, crack: u32, line: &Crack, place: Point) -> usize {
+        // Around a vertex both its segments are equally near, up to round-off: the first one counts.
+        let clearly = 1e-9 * self.grid.cell_size;
+        let around = self.division.segments_around(crack, place);
+        let (distance, segment) = nearest_of(around.into_iter(), line, place, clearly);
+        if distance < self.division.surroundings() - 2.0 * clearly {
+            return segment;
+        }
+        // Ahead of a tip or beyond a mouth, where few nodes are, what is nearest may lie anywhere.
+        nearest_of(0..line.points.len() - 1, line, place, clearly).1
     }
 
     /// Current normal of a crack segment, from below to above: across the mean of the two faces.
@@ -164,5 +168,101 @@ impl Total {
     pub(super) fn face_forces(&self, crack: usize) -> impl Iterator<Item = (Point, Vector)> {
         let pressed = self.contacts.iter().filter(move |p| p.crack as usize == crack && p.force != [0.0; 2]);
         pressed.map(|p| (self.grid.position(self.state.fields.node(p.above as usize)), Vector::from(p.force)))
+    }
+}
+
+/// Distance to the nearest of `segments` [m], which rise, and which it is; one counts as nearer than those before it when it is so `clearly` [m].
+fn nearest_of(segments: impl Iterator<Item = usize>, line: &Crack, place: Point, clearly: f64) -> (f64, usize) {
+    segments.fold((f64::INFINITY, 0), |(nearest, segment), s| {
+        let distance = crate::particles::distance_to_segment(place, line.points[s], line.points[s + 1]);
+        if distance < nearest - clearly { (distance, s) } else { (nearest, segment) }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::particles::Particles;
+    use crate::solver::Solver;
+    use crate::test_scenes;
+    use fissure_scene::{End, Formulation, Kernel, TipDivision};
+    use proptest::prelude::*;
+    use std::sync::Arc;
+
+    fn plate(kernel: Kernel, points: &[[f64; 2]]) -> (Total, Vec<Crack>) {
+        let mut scene = test_scenes::free_body(test_scenes::rectangle([0.0, 0.0], [4.0, 4.0]), 0.1);
+        scene.solver.formulation = Formulation::Total;
+        scene.solver.kernel = kernel;
+        scene.solver.tip_division = TipDivision::PartlyCut;
+        test_scenes::add_crack(&mut scene, points);
+        let cracks = Crack::of_scene(&scene);
+        (Total::new(&scene, Arc::new(Particles::fill(&scene).unwrap()), &cracks).unwrap(), cracks)
+    }
+
+    /// The segment of every pair, and what a look at all segments of the crack finds.
+    fn assert_nearest(total: &Total, cracks: &[Crack]) {
+        let clearly = 1e-9 * total.grid.cell_size;
+        assert!(!total.contacts.is_empty());
+        for pair in &total.contacts {
+            let line = &cracks[pair.crack as usize];
+            let place = total.grid.position(total.state.fields.node(pair.above as usize));
+            let nearest = nearest_of(0..line.points.len() - 1, line, place, clearly).1;
+            assert_eq!(pair.segment as usize, nearest, "at {place}");
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+
+        /// Truth: brute force, over cracks that wind, come back beside themselves and grow.
+        #[test]
+        fn pairs_have_the_nearest_segment_of_all(
+            kernel in prop::sample::select(vec![Kernel::Bilinear, Kernel::Gimp, Kernel::Cubic]),
+            start in 0.5..3.5_f64,
+            turns in prop::collection::vec((-1.2..1.2_f64, 0.02..0.6_f64), 1..40),
+            grown in 0.0..0.6_f64,
+        ) {
+            let mut points = vec![Point::new(0.0, start), Point::new(0.3, start)];
+            let mut heading = 0.0_f64;
+            for (turn, length) in turns {
+                heading += turn;
+                let next = points[points.len() - 1] + Vector::new(heading.cos(), heading.sin()) * length;
+                if next.coords.amin() < 0.3 || next.coords.amax() > 3.7 {
+                    break;
+                }
+                points.push(next);
+            }
+            let points: Vec<[f64; 2]> = points.into_iter().map(Into::into).collect();
+            let (mut total, mut cracks) = plate(kernel, &points);
+            assert_nearest(&total, &cracks);
+            let ahead = Vector::new(heading.cos(), heading.sin()) * (grown * total.grid.cell_size);
+            if ahead != Vector::zeros() {
+                let tip = cracks[0].tip_position(End::End);
+                cracks[0].push(End::End, tip + ahead);
+                total.recut(&cracks, &[(0, End::End)]);
+                assert_nearest(&total, &cracks);
+            }
+        }
+    }
+
+    /// Truth: the construction. However long a crack is, only what is around a node is looked at.
+    #[test]
+    fn a_node_looks_at_what_is_around_it() {
+        let most = [40, 400].map(|segments| {
+            let points: Vec<[f64; 2]> =
+                (0..=segments).map(|k| [0.1 + 0.2 * f64::from(k), 2.03 + 0.02 * f64::from(k % 2)]).collect();
+            let mut scene = test_scenes::free_body(test_scenes::rectangle([0.0, 0.0], [90.0, 4.0]), 0.1);
+            scene.solver.formulation = Formulation::Total;
+            test_scenes::add_crack(&mut scene, &points);
+            let cracks = Crack::of_scene(&scene);
+            let total = Total::new(&scene, Arc::new(Particles::fill(&scene).unwrap()), &cracks).unwrap();
+            let looks = |pair: &ContactPair| {
+                let place = total.grid.position(total.state.fields.node(pair.above as usize));
+                total.division.segments_around(pair.crack, place).len()
+            };
+            total.contacts.iter().map(looks).max().unwrap()
+        });
+        assert!(most[0] < 40 && most[1] <= most[0] + 2, "{most:?}");
     }
 }
