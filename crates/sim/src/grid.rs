@@ -393,6 +393,11 @@ impl StencilNodes<'_> {
         places.chain(beside(a).flat_map(move |a| beside(b).map(move |b| (a, b)))).filter_map(|(a, b)| self.at(a, b))
     }
 
+    /// Where node (a, b) of the stencil is, be it there or not [m].
+    pub(crate) fn place(&self, a: usize, b: usize) -> Point {
+        self.grid.place([self.lowest[0].wrapping_add(a as i32), self.lowest[1].wrapping_add(b as i32)])
+    }
+
     /// Node (a, b) of the stencil.
     pub(crate) fn at(&self, a: usize, b: usize) -> Option<usize> {
         match self.rows {

@@ -218,8 +218,9 @@ impl Total {
     fn body_of_fields(&self) -> Vec<u32> {
         let mut bodies = vec![0; self.state.mass.len()];
         if self.scene.bodies.len() > 1 {
+            let mut reader = self.reader();
             for p in 0..self.particles.len() {
-                self.for_each_entry(p, |field, _, _| bodies[field] = self.particles.body[p]);
+                reader.for_each_entry(p, |field, _, _| bodies[field] = self.particles.body[p]);
             }
         }
         bodies
@@ -232,8 +233,9 @@ impl Total {
         }
         let h = self.grid.cell_size;
         let mut volume = vec![0.0; self.state.mass.len()];
+        let mut reader = self.reader();
         for p in 0..self.particles.len() {
-            self.for_each_entry(p, |field, w, _| volume[field] += self.particles.volume[p] * w);
+            reader.for_each_entry(p, |field, w, _| volume[field] += self.particles.volume[p] * w);
         }
         let fields = volume.iter().zip(self.places_of_fields()).enumerate();
         fields.filter_map(|(field, (v, place))| surface_node(field, self.grid.place(place), v / (h * h), h)).collect()
@@ -255,8 +257,9 @@ impl Total {
         particles.sort_unstable();
         particles.dedup();
         let mut volume = std::collections::BTreeMap::<usize, f64>::new();
+        let mut reader = self.reader();
         for p in particles {
-            self.for_each_entry(p, |field, w, _| {
+            reader.for_each_entry(p, |field, w, _| {
                 if near.contains(place(field)) {
                     *volume.entry(field).or_default() += self.particles.volume[p] * w;
                 }
@@ -311,12 +314,13 @@ impl Total {
     pub(super) fn set_initial_velocities(&mut self) {
         let mut momentum = [vec![0.0; self.state.mass.len()], vec![0.0; self.state.mass.len()]];
         let mut any = false;
+        let mut reader = self.reader();
         for (p, motion) in self.particles.first_motions(&self.scene).into_iter().enumerate() {
             let v = motion.velocity;
             if v != Vector::zeros() {
                 any = true;
                 let m = self.particles.mass[p];
-                self.for_each_entry(p, |field, w, _| {
+                reader.for_each_entry(p, |field, w, _| {
                     momentum[0][field] += m * w * v.x;
                     momentum[1][field] += m * w * v.y;
                 });

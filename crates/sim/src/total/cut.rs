@@ -3,7 +3,7 @@
 use super::{FieldVectors, NONE, Run, Total};
 use crate::crack::Crack;
 use crate::crossing::Side;
-use crate::grid::GridRow;
+use crate::grid::Walker;
 use crate::saved::{self, Fits};
 use fissure_scene::{CrackEnd, Matrix, Point, Vector};
 use serde::{Deserialize, Serialize};
@@ -205,7 +205,7 @@ impl Total {
                     entries.push(Entry { field: node as u32, weight: w, gradient: [g.x, g.y] });
                     continue;
                 }
-                for share in self.division.pair(place, self.grid.position(node)) {
+                for share in self.division.pair(place, nodes.place(a, b)) {
                     let field = self.state.fields.find_or_add(node, &share.crossed);
                     let gradient = g * share.fraction + share.gradient * w;
                     entries.push(Entry {
@@ -246,15 +246,16 @@ impl Total {
         if !self.has_rows() {
             return runs;
         }
-        let GridRow { row, nodes } = self.grid.row(index);
+        let row = self.grid.row(index).row;
+        let mut walker = Walker::new(&self.grid);
         for span in self.grid.spans_of_row(index) {
             for column in span.first..span.end - 1 {
+                let Some(rows) = walker.rows([column, row], 2) else { continue };
                 let Some(material) = self.whole_cell(column, row) else { continue };
-                let Some(upper) = self.grid.node([column, row + 1]) else { continue };
-                let lower = (nodes.start + span.number as usize) as u32 + (column - span.first) as u32;
+                let [lower, upper] = [rows[0] as u32, rows[1] as u32];
                 match runs.last_mut() {
                     Some(run) if run.material == material && run.lower + run.count == lower => run.count += 1,
-                    _ => runs.push(Run { lower, upper: upper as u32, count: 1, material }),
+                    _ => runs.push(Run { lower, upper, count: 1, material }),
                 }
             }
         }
@@ -264,8 +265,9 @@ impl Total {
     /// Particles on the general path in the cells above a row of nodes: those no run covers.
     pub(super) fn cut_of_row(&self, index: usize, runs: &[Run]) -> Vec<usize> {
         let row = self.grid.row(index).row;
-        let is_covered = |column: i32| {
-            let Some(node) = self.grid.node([column, row]) else { return false };
+        let mut walker = Walker::new(&self.grid);
+        let mut is_covered = |column: i32| {
+            let Some([node, ..]) = walker.rows([column, row], 1) else { return false };
             let after = runs.partition_point(|run| run.lower as usize <= node);
             after > 0 && runs[after - 1].holds(node)
         };
@@ -279,8 +281,8 @@ impl Total {
         let cell = move |offset: f64, place: i32| (offset + (f64::from(place) + 0.5) * s).floor() as i32;
         let place = |row: i32| (f64::from(row) - base.y) / s - 0.5;
         let (first, last) = (place(row).floor() as i32 - 1, place(row + 1).ceil() as i32 + 1);
-        let particles = self.particles.within([i32::MIN, first], [i32::MAX, last]);
-        let of_row = particles.filter(move |&p| cell(base.y, self.particles.place[p][1]) == row);
+        let rows = (first..=last).filter(move |&place| cell(base.y, place) == row);
+        let of_row = rows.flat_map(|place| self.particles.within([i32::MIN, place], [i32::MAX, place]));
         of_row.map(move |p| (cell(base.x, self.particles.place[p][0]), p))
     }
 
@@ -298,9 +300,10 @@ impl Total {
         self.state.cut.replace(stencils);
         let fields = self.state.fields.len();
         let mut mass = vec![0.0; fields];
+        let mut reader = self.reader();
         for p in 0..self.particles.len() {
             let m = self.particles.mass[p];
-            self.for_each_entry(p, |field, w, _| mass[field] += m * w);
+            reader.for_each_entry(p, |field, w, _| mass[field] += m * w);
         }
         self.state.mass = mass;
         for values in self.state.displacement.iter_mut().chain(&mut self.state.velocity) {
@@ -358,13 +361,15 @@ impl Total {
                 if w <= 1e-14 {
                     continue;
                 }
-                let node = match nodes.at(a, b).filter(has_material) {
+                let found = match nodes.at(a, b).filter(has_material) {
                     // On the last grid line of a body, up to rounding.
-                    None if w <= ROUND_OFF => nodes.near(a, b).find(has_material),
-                    node => node,
+                    None if w <= ROUND_OFF => {
+                        nodes.near(a, b).find(has_material).map(|node| (node, self.grid.position(node)))
+                    }
+                    node => node.map(|node| (node, nodes.place(a, b))),
                 };
-                let Some(node) = node else { return self.carried_entries(rest, nudged) };
-                for share in self.division.pair(nudged, self.grid.position(node)) {
+                let Some((node, place)) = found else { return self.carried_entries(rest, nudged) };
+                for share in self.division.pair(nudged, place) {
                     match self.state.fields.find(node, &share.crossed) {
                         Some(field) if mass(field) > 0.0 => entries.push((field as u32, w * share.fraction)),
                         _ => return self.carried_entries(rest, nudged),
@@ -397,7 +402,7 @@ impl Total {
         let Some((_, _, p)) = nearest else { return Vec::new() };
         let offset = rest - self.particles.rest[p];
         let mut entries = Vec::with_capacity(8);
-        self.for_each_entry(p, |field, w, g| entries.push((field as u32, w + g.dot(&offset))));
+        self.reader().for_each_entry(p, |field, w, g| entries.push((field as u32, w + g.dot(&offset))));
         entries
     }
 

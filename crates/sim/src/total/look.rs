@@ -1,6 +1,7 @@
 //! Looking at the solver: what is around a tip, what a frame holds, whether the run is still sound, how large a step may be.
 
 use super::cut::Probe;
+use super::reader::Rates;
 use super::{FieldVectors, Total, left_of_tip};
 use crate::SimulationError;
 use crate::crack::{Crack, DIRECTION_LENGTH};
@@ -67,10 +68,11 @@ impl Total {
         let center = [center.x.floor() as i32, center.y.floor() as i32];
         let mut found: Vec<(usize, Matrix)> = Vec::new();
         let mut mean = Matrix::zeros();
+        let mut reader = self.reader();
         for p in self.particles.within(center.map(|c| c.saturating_sub(reach)), center.map(|c| c.saturating_add(reach)))
         {
             if (self.particles.rest[p] - tip).norm_squared() < radius * radius && self.particles.body[p] == line.body {
-                let h = self.strain_of(p);
+                let h = reader.strain(p);
                 mean += h;
                 found.push((p, h));
             }
@@ -86,8 +88,8 @@ impl Total {
             let e = &self.elastic[self.particles.material[p] as usize];
             let arm = self.particles.rest[p] - tip;
             let into = |m: Matrix| frame * m * frame.transpose();
-            let acceleration = self.value(p, &self.acceleration);
-            let velocity = self.value(p, &self.state.velocity) - acceleration * half_step;
+            let Rates { velocity, velocity_gradient, acceleration } = reader.rates(p);
+            let velocity = velocity - acceleration * half_step;
             points.push(QuadraturePoint {
                 place: frame * arm,
                 side: side_of(&line.points, end, ahead, self.particles.rest[p]),
@@ -97,7 +99,7 @@ impl Total {
                 energy: crate::energy_density(&h, e.mu, e.lambda),
                 density: e.density,
                 velocity: frame * (back * velocity),
-                velocity_slope: frame * (back * (self.gradient(p, &self.state.velocity) * ahead)),
+                velocity_slope: frame * (back * (velocity_gradient * ahead)),
                 acceleration: frame * (back * acceleration),
                 material: self.particles.material[p],
             });
@@ -187,12 +189,13 @@ impl Total {
     /// Whether every particle is finite and within the range of the formulation.
     pub(super) fn check_range(&self, time: f64) -> Result<(), SimulationError> {
         let whole_cells_are_sound = self.largest_edge_strain() < SOUND_STRAIN;
+        let mut reader = self.reader();
         for p in 0..self.particles.len() {
             if whole_cells_are_sound && self.state.cut.entries_of(p).is_none() {
                 continue;
             }
-            let h = self.strain_of(p);
-            let place = self.particles.rest[p] + self.value(p, &self.state.displacement);
+            let motion = reader.motion(p);
+            let (h, place) = (motion.strain, self.particles.rest[p] + motion.displacement);
             let fail = |cause: String| SimulationError::Unstable { time, x: place.x, y: place.y, cause };
             let volume_ratio = 1.0 + crate::volume_change(&h);
             if !volume_ratio.is_finite() {
@@ -314,13 +317,14 @@ impl Total {
             deformation_gradient: Vec::with_capacity(n),
             cauchy_stress: Vec::with_capacity(n),
         };
+        let mut reader = self.reader();
         for p in 0..n {
             let e = &self.elastic[self.particles.material[p] as usize];
-            let h = self.strain_of(p);
-            frame.position.push(self.particles.rest[p] + self.value(p, &self.state.displacement));
-            frame.velocity.push(self.value(p, &self.state.velocity));
-            frame.deformation_gradient.push(Matrix::identity() + h);
-            frame.cauchy_stress.push(crate::cauchy_stress(&h, e.mu, e.lambda));
+            let motion = reader.motion(p);
+            frame.position.push(self.particles.rest[p] + motion.displacement);
+            frame.velocity.push(motion.velocity);
+            frame.deformation_gradient.push(Matrix::identity() + motion.strain);
+            frame.cauchy_stress.push(crate::cauchy_stress(&motion.strain, e.mu, e.lambda));
         }
         frame
     }

@@ -9,6 +9,7 @@ mod contact;
 mod cut;
 mod look;
 mod memory;
+mod reader;
 mod recut;
 mod refresh;
 mod rows;
@@ -23,7 +24,7 @@ use crate::crossing::Side;
 use crate::division::{CrackLine, Division, TipCut};
 use crate::elastic::Elastic;
 use crate::fields::Fields;
-use crate::grid::{Grid, Walker};
+use crate::grid::Grid;
 use crate::kernel;
 use crate::particles::Particles;
 use crate::saved::{self, Fits};
@@ -32,8 +33,7 @@ use boundary::{Constraint, PointForce};
 use contact::ContactPair;
 use cut::{CutParticles, Probe};
 use fissure_scene::{
-    CrackEnd, CrackFrame, End, Kernel, Matrix, OutlineFrame, ParticleFrame, Point, Scene, SolverSettings, TipDivision,
-    Vector,
+    CrackEnd, CrackFrame, End, Kernel, OutlineFrame, ParticleFrame, Point, Scene, SolverSettings, TipDivision, Vector,
 };
 use rows::{CellRows, RowConstants, Run};
 use serde::{Deserialize, Serialize};
@@ -236,49 +236,6 @@ impl Total {
             && (self.scene.cell_size - 2.0 * self.particles.spacing).abs() < 1e-12 * self.scene.cell_size
     }
 
-    /// Displacement gradient H = F − I of a particle.
-    fn strain_of(&self, particle: usize) -> Matrix {
-        self.gradient(particle, &self.state.displacement) + self.state.cut.misfit_of(particle)
-    }
-
-    /// Gradient at a particle of field values `u`.
-    fn gradient(&self, particle: usize, u: &FieldVectors) -> Matrix {
-        let mut h = Matrix::zeros();
-        self.for_each_entry(particle, |field, _, g| {
-            let v = [u[0][field], u[1][field]];
-            h.m11 += v[0] * g.x;
-            h.m12 += v[0] * g.y;
-            h.m21 += v[1] * g.x;
-            h.m22 += v[1] * g.y;
-        });
-        h
-    }
-
-    /// Value of a field vector at a particle.
-    fn value(&self, particle: usize, u: &FieldVectors) -> Vector {
-        let mut value = Vector::zeros();
-        self.for_each_entry(particle, |field, w, _| value += Vector::new(u[0][field], u[1][field]) * w);
-        value
-    }
-
-    /// Calls `visit` with (field, weight, gradient) for every entry of the stencil of a particle.
-    fn for_each_entry(&self, particle: usize, mut visit: impl FnMut(usize, f64, Vector)) {
-        if let Some(entries) = self.state.cut.entries_of(particle) {
-            for e in entries {
-                visit(e.field as usize, e.weight, Vector::new(e.gradient[0], e.gradient[1]));
-            }
-        } else {
-            let stencil = self.stencil(self.particles.rest[particle]);
-            // All nodes of a particle exist.
-            let Some(rows) = Walker::new(&self.grid).rows(stencil.first, stencil.width) else { return };
-            for b in 0..stencil.width {
-                for a in 0..stencil.width {
-                    visit(rows[b] + a, stencil.weight(a, b), stencil.weight_gradient(a, b));
-                }
-            }
-        }
-    }
-
     fn stencil(&self, place: Point) -> kernel::Stencil {
         stencil_of(&self.scene, &self.grid, place)
     }
@@ -334,10 +291,11 @@ impl Total {
     }
 
     fn strain_energy(&self) -> f64 {
+        let mut reader = self.reader();
         (0..self.particles.len())
             .map(|p| {
                 let e = &self.elastic[self.particles.material[p] as usize];
-                let h = self.strain_of(p);
+                let h = reader.strain(p);
                 self.particles.volume[p] * crate::energy_density(&h, e.mu, e.lambda)
             })
             .sum::<f64>()
@@ -463,11 +421,11 @@ impl Solver for Total {
     }
 
     fn hand_over(&mut self, cracks: &[Crack]) -> Option<Handover> {
-        let u = &self.state.displacement;
+        let mut reader = self.reader();
         let particles = (0..self.particles.len())
             .map(|p| {
-                let position = self.particles.rest[p] + self.value(p, u);
-                (position, self.value(p, &self.state.velocity), self.strain_of(p))
+                let motion = reader.motion(p);
+                (self.particles.rest[p] + motion.displacement, motion.velocity, motion.strain)
             })
             .collect();
         Some(Handover {

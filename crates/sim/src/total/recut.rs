@@ -107,7 +107,8 @@ impl Total {
         }
         affected.sort_unstable();
         affected.dedup();
-        let strains: Vec<Matrix> = affected.iter().map(|&p| self.strain_of(p)).collect();
+        let mut reader = self.reader();
+        let strains: Vec<Matrix> = affected.iter().map(|&p| reader.strain(p)).collect();
         let mut stencils = Vec::with_capacity(affected.len());
         let mut changes: Vec<Change> = Vec::new();
         for &p in &affected {
@@ -118,7 +119,7 @@ impl Total {
         self.hand_over(&changes);
         self.state.cut.replace(stencils);
         for (&p, strain) in affected.iter().zip(strains) {
-            let misfit = strain - self.gradient(p, &self.state.displacement);
+            let misfit = strain - self.reader().gradient(p, &self.state.displacement);
             // What only sums in another order has not changed.
             let is_real = misfit.norm() > ROUND_OFF * strain.norm();
             self.state.cut.set_misfit(p, if is_real { misfit } else { Matrix::zeros() });
@@ -135,7 +136,7 @@ impl Total {
                 None => weights.push((node, field, w)),
             }
         };
-        self.for_each_entry(particle, |field, w, _| add(field as u32, -w));
+        self.reader().for_each_entry(particle, |field, w, _| add(field as u32, -w));
         new.iter().for_each(|e| add(e.field, e.weight));
         weights.sort_unstable_by_key(|x| (x.0, x.1));
         for of_node in weights.chunk_by(|a, b| a.0 == b.0) {

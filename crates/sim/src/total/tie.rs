@@ -346,10 +346,11 @@ impl Total {
     fn field_stiffness(&self, field: u32, node: Point) -> f64 {
         let reach = Vector::repeat(0.5 * kernel::width(self.settings.kernel) as f64 * self.grid.cell_size);
         let mut stiffness = 0.0;
+        let mut reader = self.reader();
         for p in self.particles.in_box(node - reach, node + reach) {
             let e = &self.elastic[self.particles.material[p] as usize];
             let modulus = e.effective_modulus * self.particles.volume[p];
-            self.for_each_entry(p, |of, _, gradient| {
+            reader.for_each_entry(p, |of, _, gradient| {
                 if of == field as usize {
                     stiffness += modulus * gradient.norm_squared();
                 }
