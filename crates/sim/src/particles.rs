@@ -95,6 +95,11 @@ impl Particles {
         }
     }
 
+    /// Which particle stands where.
+    pub(crate) fn lattice(&self) -> &SpanRows {
+        &self.lattice
+    }
+
     /// The particle at a place of the lattice.
     pub(crate) fn at(&self, [i, j]: [i32; 2]) -> Option<usize> {
         self.lattice.number(i, j)

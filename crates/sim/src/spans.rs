@@ -93,6 +93,11 @@ impl SpanRows {
         &self.spans[self.rows[index].first as usize..end]
     }
 
+    /// Rows that have spans, rising, each with them.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = (i32, &[Span])> {
+        (0..self.rows.len()).map(|index| (self.rows[index].row, self.spans_of(index)))
+    }
+
     /// The span of the row at `index` that holds `column`.
     pub(crate) fn span_with(&self, index: usize, column: i32) -> Option<&Span> {
         let spans = self.spans_of(index);

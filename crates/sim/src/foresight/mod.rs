@@ -6,6 +6,7 @@
 mod buried;
 mod course;
 mod driving;
+mod groups;
 mod idle;
 mod pace;
 mod samples;
@@ -13,6 +14,7 @@ mod section;
 mod strain;
 mod supports;
 mod toughness;
+mod wholeness;
 mod width;
 
 pub(crate) use course::expected_growth;
@@ -25,8 +27,9 @@ use fissure_scene::{Scene, SceneFault, Warning};
 /// Checks what can be seen only when the particles are laid.
 ///
 /// # Errors
-/// Supports that contradict each other; a body inside a collider.
+/// A body that is too narrow for its particles to hold together; supports that contradict each other; a body inside a collider.
 pub(crate) fn check_layout(scene: &Scene, particles: &Particles) -> Result<(), SceneFault> {
+    wholeness::check_wholeness(scene, particles)?;
     supports::check_supports(scene, particles)?;
     buried::check_colliders(scene, particles)
 }
