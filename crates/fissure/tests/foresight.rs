@@ -9,7 +9,7 @@ const PLATE: &str = r#"
 [[body]]
 name = "plate"
 material = "pmma"
-shape = { rectangle = { min = [-10.0, -10.0], max = [10.0, 10.0] } }
+shape = { rectangle = { min = [-20.0, -20.0], max = [20.0, 10.0] } }
 
 [[crack]]
 name = "notch"
@@ -109,6 +109,10 @@ fn what_will_go_wrong_is_said_with_value_and_line() {
         (pulled("1e12"), &["load 1 makes stresses of about", "scene.toml:17:1", "multiply the load by"]),
         (pulled("20e6").replace("rate = 1000.0", "rate = 24.0"), &["within 0.", "frames.rate", "scene.toml:16:8"]),
         (narrow, &["3.2 cells wide", "scene.toml:5:1"]),
+        (
+            pulled("20e6").replace("[0.0, 4.0]]", "[0.0, -7.0]]"),
+            &["4.8 cells to the outline", "scene.toml:9:1", "0.187 m or less"],
+        ),
     ] {
         let (exit, _, told) = said(&scene, "check", &["--strict"]);
         assert_eq!(exit, 2, "{words:?}\n{told}");

@@ -132,3 +132,9 @@ pub(crate) fn show(point: crate::Point) -> String {
 pub(crate) fn short(value: f64) -> f64 {
     format!("{value:.6e}").parse().unwrap_or(value)
 }
+
+/// A number of three digits at or just below a positive `value`: what "or less" may be said of.
+pub(crate) fn rounded_down(value: f64) -> f64 {
+    let unit = 10.0_f64.powf(value.log10().floor() - 2.0);
+    short((value / unit * (1.0 + 1e-9)).floor() * unit)
+}

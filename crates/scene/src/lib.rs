@@ -11,6 +11,7 @@ mod fault;
 mod frame;
 mod geometry;
 mod infinite;
+mod ligament;
 mod load;
 mod materials;
 mod narrow;

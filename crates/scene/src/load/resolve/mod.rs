@@ -4,6 +4,7 @@ mod bodies;
 mod cracks;
 mod crumbs;
 mod flaws;
+mod ligaments;
 mod motion;
 mod narrow_bodies;
 mod origin;
@@ -128,6 +129,7 @@ impl<'d> Resolver<'d> {
         self.flaws(&mut scene, tolerance)?;
         scene.validate().map_err(|fault| self.origin.in_document(fault))?;
         self.short_cracks(&scene);
+        self.ligaments(&scene);
         Ok(scene)
     }
 
