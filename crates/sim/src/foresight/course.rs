@@ -97,25 +97,52 @@ fn meeting(from: Point, toward: Vector, a: Point, b: Point) -> Option<f64> {
 const SHARED_WAY: f64 = 0.5;
 /// So many live tips in a scene share their ways.
 const MANY_TIPS: usize = 16;
+/// Looks at a tip that nothing loads yet, as a part of those at one that something does.
+const IDLE_LOOKS: f64 = 0.4;
+/// A tip is live for so many times as long as the crossing of its way takes: it waits for its load as well.
+const LIVE_CROSSINGS: f64 = 2.0;
 /// Mean speed of a running tip as a part of its limit.
 const MEAN_SPEED: f64 = 0.8;
 
-/// Length by which cracks are expected to grow over all frames [m], roughly.
-pub(crate) fn expected_growth(scene: &Scene, elastic: &[Elastic]) -> f64 {
-    let end = scene.frames.time(scene.frames.last);
-    if !scene.growth.enabled {
-        return 0.0;
+/// What cracks are expected to do over all frames, roughly.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Course {
+    /// Length by which they grow [m].
+    pub(crate) growth: f64,
+    /// How long their tips are looked at, all together [s]: one that has come to the end of its way no longer is, one that nothing loads seldom.
+    pub(crate) watched: f64,
+}
+
+impl Course {
+    /// The course of the cracks of `scene`.
+    pub(crate) fn of(scene: &Scene, elastic: &[Elastic]) -> Self {
+        let end = scene.frames.time(scene.frames.last);
+        let tips: Vec<DrawnTip<'_>> = DrawnTip::all(scene).collect();
+        let mut course = Self { growth: 0.0, watched: end * tips.len() as f64 };
+        if !scene.growth.enabled {
+            return course;
+        }
+        let reached = toughness::greatest_loads(scene, elastic);
+        let contact = first_contact(scene, end);
+        let running = (end - contact).max(0.0);
+        course.watched -= (1.0 - IDLE_LOOKS) * contact * tips.len() as f64;
+        let part = if tips.len() >= MANY_TIPS { SHARED_WAY } else { 1.0 };
+        // Supports that move open cracks as slowly as they move.
+        let is_slow = scene.loads.is_empty() && !scene.supports.is_empty();
+        for tip in &tips {
+            let moves = tip.is_scheduled() || reached.get(tip.index).is_none_or(|&load| load >= 1.0);
+            let speed = MEAN_SPEED * tip.speed_limit(scene, elastic);
+            let way = part * tip.way(scene);
+            if !moves || !way.is_finite() {
+                continue;
+            }
+            course.growth += way.min(speed * running);
+            if !tip.is_scheduled() && !is_slow && speed > 0.0 {
+                course.watched -= (running - LIVE_CROSSINGS * running.min(way / speed)).max(0.0);
+            }
+        }
+        course
     }
-    let tips: Vec<DrawnTip<'_>> = DrawnTip::all(scene).collect();
-    let reached = toughness::greatest_loads(scene, elastic);
-    let running = (end - first_contact(scene, end)).max(0.0);
-    let part = if tips.len() >= MANY_TIPS { SHARED_WAY } else { 1.0 };
-    let way = |tip: &DrawnTip<'_>| {
-        let moves = tip.is_scheduled() || reached.get(tip.index).is_none_or(|&load| load >= 1.0);
-        let most = MEAN_SPEED * tip.speed_limit(scene, elastic) * running;
-        if moves { (part * tip.way(scene)).min(most) } else { 0.0 }
-    };
-    tips.iter().map(way).filter(|way| way.is_finite()).sum()
 }
 
 /// When something first acts on a crack [s]: at once, unless the bodies have to fall or fly onto a collider first.

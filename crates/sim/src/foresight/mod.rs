@@ -17,7 +17,7 @@ mod toughness;
 mod wholeness;
 mod width;
 
-pub(crate) use course::expected_growth;
+pub(crate) use course::Course;
 pub(crate) use strain::overload;
 
 use crate::elastic::Elastic;

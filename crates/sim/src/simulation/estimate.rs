@@ -1,7 +1,8 @@
 //! What a scene will cost, from counts alone: the same scene has the same estimate every time, and none fails that would run.
 
 use super::Simulation;
-use crate::{SimulationError, foresight, formulation, memory};
+use crate::foresight::Course;
+use crate::{SimulationError, formulation, memory};
 use fissure_scene::{Formulation, Kernel, Scene};
 
 /// What a scene will cost, known before it runs.
@@ -69,7 +70,7 @@ impl Simulation {
             Formulation::Updated => "updated Lagrangian",
             _ => "total Lagrangian",
         };
-        let growth = foresight::expected_growth(scene, &simulation.elastic);
+        let course = Course::of(scene, &simulation.elastic);
         Ok(Estimate {
             particles: simulation.particles.len(),
             cells: simulation.cells_with_material(),
@@ -78,13 +79,13 @@ impl Simulation {
             steps: (steps_per_frame * frames) as u64,
             formulation: format!("{name}: {}", choice.reason),
             memory: memory::needed(&simulation.scene, simulation.formulation) as u64,
-            growth,
-            seconds: simulation.expected_seconds(steps_per_frame * frames, frames + 1.0, growth),
+            growth: course.growth,
+            seconds: simulation.expected_seconds(steps_per_frame * frames, frames + 1.0, course),
         })
     }
 
-    /// Wall time for so many steps and frames, with cracks that grow by `growth` [m].
-    fn expected_seconds(&self, steps: f64, frames: f64, growth: f64) -> f64 {
+    /// Wall time for so many steps and frames, with cracks that take `course`.
+    fn expected_seconds(&self, steps: f64, frames: f64, course: Course) -> f64 {
         let particles = self.particles.len() as f64;
         let flows = self.scene.materials.iter().any(|m| m.plasticity.is_some());
         let nodes = match self.scene.solver.kernel {
@@ -97,10 +98,10 @@ impl Simulation {
             Formulation::Updated => COSTS.updated_step * nodes,
             _ => COSTS.total_step,
         };
-        let tips: usize = self.state.cracks.iter().map(crate::crack::Crack::live_tips).sum();
-        let looks = LOOKS_PER_STEP * steps * tips as f64;
+        let end = self.scene.frames.time(self.scene.frames.last);
+        let looks = if end > 0.0 { LOOKS_PER_STEP * steps * course.watched / end } else { 0.0 };
         // With more increments to a cell it is cut anew more often.
-        let grown = growth / self.scene.cell_size * (0.125 / self.scene.growth.increment).max(0.25);
+        let grown = course.growth / self.scene.cell_size * (0.125 / self.scene.growth.increment).max(0.25);
         COSTS.start
             + step * particles * steps
             + COSTS.look * looks
