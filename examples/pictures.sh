@@ -13,7 +13,7 @@ shots() {
         logo) echo "1 48" ;;
         three-holes) echo "20 48" ;;
         two-materials) echo "14 48" ;;
-        painted) echo "12 24 48" ;;
+        painted) echo "20 32 48" ;;
         mud) echo "6 14 40" ;;
         glass-impact) echo "8 14 22" ;;
     esac
