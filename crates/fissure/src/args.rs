@@ -12,7 +12,8 @@ use std::path::PathBuf;
     name = "fissure",
     version = version(),
     about = "Draw a body and its cracks; get cracked, extruded mesh sequences",
-    after_help = "Examples:\n  fissure new my-crack             write a scene to start from\n  fissure run my-crack/scene.toml  simulate it and write its meshes\n\n\
+    after_help = "Examples:\n  fissure new my-crack             write a scene to start from\n  fissure run my-crack/scene.toml  simulate it and write its meshes\n  \
+                  fissure run plate.svg --material glass   the same of a drawing with a body and a crack in it\n\n\
                   Exit codes: 0 ok, 2 usage or scene, 3 file, 4 numerical failure (do not retry), 75 interrupted (run again to resume)",
     subcommand_required = true,
     arg_required_else_help = true,
@@ -109,9 +110,15 @@ pub(crate) struct NewArguments {
 /// The scene and what overrides it.
 #[derive(Debug, Args)]
 pub(crate) struct SceneArguments {
-    /// The scene file, or the folder it is in.
+    /// The scene file, or the folder it is in, or an SVG drawing whose elements or layers are called body, crack, guide, collider.
     #[arg(value_hint = ValueHint::AnyPath)]
     pub(crate) scene: PathBuf,
+    /// Of a drawing: what its bodies are made of, glass, pmma, snow or jello.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) material: Option<String>,
+    /// Of a drawing: metres that its width spans [default: as its units say].
+    #[arg(long, value_name = "METRES", value_parser = parse_length)]
+    pub(crate) width: Option<f64>,
     /// Override one key of the scene file; may be repeated. The value is TOML; a bare word is a string.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
@@ -144,7 +151,7 @@ pub(crate) struct MeshArguments {
     #[arg(long, value_name = "PART,..", value_delimiter = ',', value_parser = words::<Part>(&["cracked", "body", "faces", "collider", "particles"]), hide_possible_values = true)]
     pub(crate) parts: Vec<Part>,
     /// Thickness of the solids in metres [default: as in the scene].
-    #[arg(long, value_name = "METRES", value_parser = parse_thickness)]
+    #[arg(long, value_name = "METRES", value_parser = parse_length)]
     pub(crate) thickness: Option<f64>,
     /// Up axis of PLY files, y or z; glTF is always y up [default: as in the scene].
     #[arg(long, value_name = "AXIS", value_parser = words::<UpAxis>(&["y", "z"]), hide_possible_values = true)]
@@ -156,6 +163,9 @@ pub(crate) struct MeshArguments {
 pub(crate) struct CheckArguments {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,
+    /// Thickness of the solids in metres [default: as in the scene; of a drawing a tenth of their size].
+    #[arg(long, value_name = "METRES", value_parser = parse_length)]
+    pub(crate) thickness: Option<f64>,
 }
 
 /// Arguments of `run`.
@@ -177,6 +187,9 @@ pub(crate) struct RunArguments {
 pub(crate) struct SimArguments {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,
+    /// Thickness of the solids in metres [default: as in the scene; of a drawing a tenth of their size].
+    #[arg(long, value_name = "METRES", value_parser = parse_length)]
+    pub(crate) thickness: Option<f64>,
     #[command(flatten)]
     pub(crate) take: TakeArguments,
     /// Frames wanted, e.g. `1-45`; simulation stops at the last of them (the take holds all frames up to it).
@@ -257,13 +270,9 @@ where
     PossibleValuesParser::new(words).try_map(meant)
 }
 
-fn parse_thickness(word: &str) -> Result<f64, String> {
+fn parse_length(word: &str) -> Result<f64, String> {
     let value: f64 = word.parse().map_err(|_| "not a number".to_owned())?;
-    if value.is_finite() && value > 0.0 {
-        Ok(value)
-    } else {
-        Err("the thickness must be above 0 and finite [m]".to_owned())
-    }
+    if value.is_finite() && value > 0.0 { Ok(value) } else { Err("it must be above 0 and finite [m]".to_owned()) }
 }
 
 fn parse_cells(word: &str) -> Result<f64, String> {

@@ -1,6 +1,7 @@
 //! `fissure check`
 
 use crate::args::CheckArguments;
+use crate::drawn::Wanted;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::progress::{duration, seconds};
@@ -11,7 +12,8 @@ use fissure_sim::{Estimate, Simulation};
 
 /// Validates a scene and prints what it will cost.
 pub(crate) fn check(arguments: &CheckArguments, report: &Report) -> Result<Exit, Failure> {
-    let file = scene_file::read(&arguments.scene, report)?;
+    let wanted = Wanted { thickness: arguments.thickness, written: false, output: None };
+    let file = scene_file::read(&arguments.scene, &wanted, report)?;
     let scene = file.scene();
     let estimate = Simulation::estimate(scene).map_err(|error| file.show(error.into()))?;
     report::print(&if report.is_json() { json(scene, &estimate) } else { text(scene, &estimate) })?;

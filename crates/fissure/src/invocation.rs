@@ -2,12 +2,14 @@
 
 /// The words after the program's name, quoted for a shell.
 fn words() -> impl Iterator<Item = String> {
+    std::env::args_os().skip(1).map(|word| quoted(&word.to_string_lossy()))
+}
+
+/// A word as a shell takes it.
+pub(crate) fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+@%".contains(c);
-    let quote = move |word: String| {
-        let bare = !word.is_empty() && word.chars().all(plain);
-        if bare { word } else { format!("'{}'", word.replace('\'', r"'\''")) }
-    };
-    std::env::args_os().skip(1).map(move |word| quote(word.to_string_lossy().into_owned()))
+    let bare = !word.is_empty() && word.chars().all(plain);
+    if bare { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
 }
 
 /// The command as it was typed.

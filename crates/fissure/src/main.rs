@@ -4,6 +4,7 @@ mod args;
 mod caution;
 mod check;
 mod completions;
+mod drawn;
 mod exit;
 mod failure;
 mod folder;

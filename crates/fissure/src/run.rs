@@ -1,6 +1,7 @@
 //! `fissure run`: the solver and the makers of meshes side by side.
 
 use crate::args::RunArguments;
+use crate::drawn::Wanted;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::folder::OutputFolder;
@@ -16,7 +17,9 @@ use fissure_scene::Take;
 /// Simulates a scene and writes its meshes while the solver goes on.
 pub(crate) fn run(arguments: &RunArguments, interrupt: &Interrupt, report: &Report) -> Result<Exit, Failure> {
     let threads = threads::set(arguments.take.threads)?;
-    let file = scene_file::read(&arguments.scene, report)?;
+    let output = arguments.take.output.as_deref();
+    let wanted = Wanted { thickness: arguments.mesh.thickness, written: true, output };
+    let file = scene_file::read(&arguments.scene, &wanted, report)?;
     let scene = file.scene();
     let folder = OutputFolder::of(scene, &arguments.take);
     // Told before anything is computed.

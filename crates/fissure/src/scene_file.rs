@@ -2,6 +2,7 @@
 
 use crate::args::SceneArguments;
 use crate::caution::Caution;
+use crate::drawn::{self, Wanted};
 use crate::exit::Exit;
 use crate::failure::{Failure, Snippet};
 use crate::report::Report;
@@ -35,8 +36,15 @@ impl SceneFile {
 ///
 /// # Errors
 /// When the scene cannot be simulated, or something will hardly go well and the user wants that to count.
-pub(crate) fn read(arguments: &SceneArguments, report: &Report) -> Result<SceneFile, Failure> {
-    let mut loaded = fissure_scene::load_with_warnings(&scene_in(&arguments.scene)?, &arguments.overrides)?;
+pub(crate) fn read(arguments: &SceneArguments, wanted: &Wanted<'_>, report: &Report) -> Result<SceneFile, Failure> {
+    let mut loaded = if drawn::is_drawing(&arguments.scene) {
+        drawn::load(arguments, wanted, report)?
+    } else {
+        drawn::refuse_options(arguments)?;
+        let thickness = wanted.thickness.map(|thickness| format!("output.thickness={thickness:?}"));
+        let overrides: Vec<String> = arguments.overrides.iter().cloned().chain(thickness).collect();
+        fissure_scene::load_with_warnings(&scene_in(&arguments.scene)?, &overrides)?
+    };
     let foreseen = fissure_sim::warnings(&loaded.scene);
     loaded.warn(foreseen);
     for warning in &loaded.warnings {

@@ -1,6 +1,7 @@
 //! `fissure sim`
 
 use crate::args::SimArguments;
+use crate::drawn::Wanted;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::folder::OutputFolder;
@@ -12,7 +13,9 @@ use crate::{scene_file, threads};
 /// Simulates a scene into a take.
 pub(crate) fn sim(arguments: &SimArguments, interrupt: &Interrupt, report: &Report) -> Result<Exit, Failure> {
     threads::set(arguments.take.threads)?;
-    let file = scene_file::read(&arguments.scene, report)?;
+    let output = arguments.take.output.as_deref();
+    let wanted = Wanted { thickness: arguments.thickness, written: true, output };
+    let file = scene_file::read(&arguments.scene, &wanted, report)?;
     let folder = OutputFolder::of(file.scene(), &arguments.take);
     let solve = solve::open(file.scene(), &folder, &arguments.take, arguments.frames.as_ref(), report)
         .map_err(|failure| file.show(failure))?;

@@ -28,7 +28,9 @@ mod validate;
 pub use fault::{Key, KeyPath, SceneFault, Warning};
 pub use frame::*;
 pub use geometry::*;
-pub use load::{LoadError, LoadErrorKind, Loaded, Place, load, load_with_warnings, schema, template};
+pub use load::{
+    Draft, DraftOptions, LoadError, LoadErrorKind, Loaded, Place, draft, load, load_with_warnings, schema, template,
+};
 pub use materials::{material_preset, material_presets};
 pub use narrow::*;
 pub use presets::{solver_preset, updated_kernel};

@@ -1,6 +1,7 @@
 //! From a scene file to a [`Scene`]: defaults, then the file, then overrides.
 
 mod along;
+mod draft;
 mod drawing;
 mod error;
 mod explain;
@@ -15,6 +16,7 @@ mod source;
 mod split;
 mod template;
 
+pub use draft::{Draft, DraftOptions, draft};
 pub use error::{LoadError, LoadErrorKind};
 pub use loaded::Loaded;
 pub use place::Place;
@@ -23,10 +25,11 @@ pub use template::template;
 use crate::document::{Document, ToughnessKeys};
 use crate::scene::Scene;
 use drawing::LoadedDrawing;
+use error::SCENE_FILE;
 use picture::{Budget, Picture};
 use resolve::{Resolution, Resolver};
 use source::SceneSource;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Loads a scene file and everything it refers to, with `overrides` such as `body.plate.material=glass` on top.
 ///
@@ -43,16 +46,25 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, LoadError> {
 /// # Errors
 /// As [`load`].
 pub fn load_with_warnings(path: &Path, overrides: &[String]) -> Result<Loaded, LoadError> {
-    let (source, document) = SceneSource::read(path, overrides)?;
     let folder = path.parent().unwrap_or(Path::new(""));
+    load_text(path, SCENE_FILE.read_text(path)?, overrides, |file| folder.join(file))
+}
+
+/// As [`load_with_warnings`], of the `text` of a scene file that is or would be at `path`; `locate` finds the files it names.
+fn load_text(
+    path: &Path,
+    text: String,
+    overrides: &[String],
+    locate: impl Fn(&Path) -> PathBuf,
+) -> Result<Loaded, LoadError> {
+    let (source, document) = SceneSource::parse(path, text, overrides)?;
     let drawing = match &document.drawing {
-        Some(drawing) => Some(LoadedDrawing::read(drawing, folder, |fault| LoadError::fault(&source, fault))?),
+        Some(drawing) => Some(LoadedDrawing::read(drawing, &locate, |fault| LoadError::fault(&source, fault))?),
         None => None,
     };
     let mut budget = Budget::of_a_scene();
-    let picture = |keys: &ToughnessKeys| {
-        keys.image.as_ref().map(|file| Picture::read(&folder.join(file), &mut budget)).transpose()
-    };
+    let picture =
+        |keys: &ToughnessKeys| keys.image.as_ref().map(|file| Picture::read(&locate(file), &mut budget)).transpose();
     let pictures = document.toughness.iter().map(picture).collect::<Result<Vec<_>, _>>()?;
     let resolver = Resolver::new(&document, drawing.as_ref(), &pictures, default_name(path));
     let Resolution { mut scene, origin, warnings } =

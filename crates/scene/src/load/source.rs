@@ -1,6 +1,6 @@
 //! A scene file as text, its overrides, and where each key is written.
 
-use super::error::{LoadError, LoadErrorKind, SCENE_FILE};
+use super::error::{LoadError, LoadErrorKind};
 use super::explain::{explain, syntax_remedy};
 use super::overrides::Override;
 use super::place::Place;
@@ -19,9 +19,8 @@ pub(crate) struct SceneSource {
 }
 
 impl SceneSource {
-    /// Reads a scene file and applies `overrides` to it.
-    pub(crate) fn read(path: &Path, overrides: &[String]) -> Result<(Self, Document), LoadError> {
-        let text = SCENE_FILE.read_text(path)?;
+    /// Parses the text of the scene file at `path` and applies `overrides` to it.
+    pub(crate) fn parse(path: &Path, text: String, overrides: &[String]) -> Result<(Self, Document), LoadError> {
         let malformed = |e: toml::de::Error| {
             let message = format!("not valid TOML: {}", e.message());
             let start = e.span().map_or(0, |span| span.start.min(text.len()));

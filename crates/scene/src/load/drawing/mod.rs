@@ -32,6 +32,7 @@ use effects::Effects;
 use fonts::Fonts;
 use kurbo::Affine;
 use limits::{Excess, MOST_NODES, MOST_PARTS};
+pub(super) use names::WHOLE_DRAWING;
 use names::{Element, Names};
 use piece::{Piece, Surroundings, Tracing, collect_pieces};
 use std::path::{Path, PathBuf};
@@ -59,17 +60,17 @@ pub(crate) struct LoadedDrawing {
 }
 
 impl LoadedDrawing {
-    /// Reads the drawing of a scene whose files are relative to `folder`.
+    /// Reads the drawing of a scene; `locate` finds the files that the scene names.
     pub(crate) fn read(
         drawing: &Drawing,
-        folder: &Path,
+        locate: impl Fn(&Path) -> PathBuf,
         fault: impl Fn(SceneFault) -> LoadError,
     ) -> Result<Self, LoadError> {
-        let path = folder.join(&drawing.file);
+        let path = locate(&drawing.file);
         let text = DRAWING.read_text(&path)?;
         let font = match &drawing.font {
             Some(font) => {
-                let file = folder.join(font);
+                let file = locate(font);
                 let bytes = FONT.read(&file)?;
                 Some((file, bytes))
             }
@@ -163,6 +164,11 @@ impl LoadedDrawing {
                 Err((message, "give each line its own id".into()))
             }
         }
+    }
+
+    /// The larger side of the page [m].
+    pub(crate) fn size(&self) -> f64 {
+        self.size
     }
 
     /// Smallest rectangle around the area of element `name` [m].

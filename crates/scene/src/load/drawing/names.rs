@@ -7,7 +7,7 @@ use std::path::Path;
 use usvg::roxmltree::{Document, Node};
 
 /// The name of everything that is drawn.
-pub(super) const WHOLE_DRAWING: &str = "*";
+pub(in crate::load) const WHOLE_DRAWING: &str = "*";
 /// Namespace of Inkscape's labels.
 const INKSCAPE: &str = "http://www.inkscape.org/namespaces/inkscape";
 /// Elements that draw something.
