@@ -27,13 +27,13 @@ fn text(scene: &Scene, estimate: &Estimate) -> String {
         ("scene", scene.name.clone()),
         ("bodies", scene.bodies.len().to_string()),
         ("cracks", scene.cracks.len().to_string()),
-        ("particles", format!("{}, {} m apart", estimate.particles, scene.particle_spacing)),
-        ("cells", format!("{}, {} m wide", estimate.cells, scene.cell_size)),
+        ("particles", format!("{}, {} m apart", estimate.particles, rounded(scene.particle_spacing, 6))),
+        ("cells", format!("{}, {} m wide", estimate.cells, rounded(scene.cell_size, 6))),
         ("formulation", estimate.formulation.clone()),
         ("time step", format!("{} (stable up to {})", seconds(estimate.time_step), seconds(estimate.stable_time_step))),
         ("steps", estimate.steps.to_string()),
         ("frames", format!("{}-{}, showing {}", frames.first, frames.last, seconds(frames.time(frames.last)))),
-        ("crack growth", format!("about {:.3} m expected", estimate.growth)),
+        ("crack growth", format!("about {} m expected", rounded(estimate.growth.max(0.0), 2))),
         (
             "expected time",
             format!("about {} in all, {} of it for the solver", duration(seconds_in_all), duration(estimate.seconds)),
@@ -44,6 +44,11 @@ fn text(scene: &Scene, estimate: &Estimate) -> String {
         ),
     ];
     rows.iter().map(|(name, value)| format!("{name:<16} {value}\n")).collect()
+}
+
+/// `value` with so many digits.
+fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.0$e}", digits - 1).parse().unwrap_or(value)
 }
 
 fn json(scene: &Scene, estimate: &Estimate) -> String {

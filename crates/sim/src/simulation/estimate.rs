@@ -24,7 +24,7 @@ pub struct Estimate {
     pub memory: u64,
     /// Length by which cracks are expected to grow [m], roughly.
     pub growth: f64,
-    /// Wall time of the solver with the writing of its frames [s], on the machine that [`Costs`] was measured on.
+    /// Wall time of the solver with the writing of its frames [s], on the two-core machine that the costs of its parts were measured on.
     pub seconds: f64,
 }
 

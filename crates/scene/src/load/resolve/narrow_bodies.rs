@@ -9,6 +9,9 @@ use crate::scene::Scene;
 /// share the nodes of the grid.
 const FEWEST_SPACINGS: f64 = 2.0;
 
+/// What is narrower than this, in particle spacings, is a point in which parts touch: no spacing that anybody waits for resolves it.
+const PINCH: f64 = 0.1;
+
 impl Resolver<'_> {
     /// Warns of necks, gaps and holes that the particles hardly show.
     pub(super) fn narrow_bodies(&self, scene: &Scene) {
@@ -40,8 +43,12 @@ impl Resolver<'_> {
                     show(narrowest.place),
                     narrowest.width / spacing
                 );
-                let enough = short(narrowest.width / FEWEST_SPACINGS);
-                let remedy = format!("set `grid.particle_spacing` to {enough} m or less, or draw it wider");
+                let remedy = if narrowest.width < PINCH * spacing {
+                    "draw it wider, or leave its parts apart".to_owned()
+                } else {
+                    let enough = short(narrowest.width / FEWEST_SPACINGS);
+                    format!("set `grid.particle_spacing` to {enough} m or less, or draw it wider")
+                };
                 let path = KeyPath::item("body", self.origin.bodies[index]).then("shape");
                 self.warn(Warning::new(path, message, remedy));
             }
