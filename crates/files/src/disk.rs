@@ -1,5 +1,6 @@
 //! The calls to the system that writing takes.
 
+use crate::read_regular;
 use std::ffi::OsString;
 use std::fmt;
 use std::fs::{self, File, OpenOptions};
@@ -27,7 +28,7 @@ pub trait Disk: fmt::Debug + Send + Sync {
     /// All bytes of a file.
     ///
     /// # Errors
-    /// As the system's.
+    /// As the system's, and when it is a pipe or a device, which may have no end.
     fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
 
     /// Length of a file [bytes].
@@ -119,7 +120,7 @@ impl Disk for SystemDisk {
     }
 
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        fs::read(path)
+        read_regular(path, u64::MAX)
     }
 
     fn length(&self, path: &Path) -> io::Result<u64> {

@@ -227,6 +227,20 @@ mod tests {
         assert_eq!(mode("ours"), mode("theirs"));
     }
 
+    /// Reading either would never end.
+    #[cfg(unix)]
+    #[test]
+    fn pipes_and_devices_are_no_files() {
+        let above = tempfile::tempdir().unwrap();
+        let folder = Folder::new(above.path());
+        std::os::unix::fs::symlink("/dev/zero", above.path().join("device")).unwrap();
+        let made = std::process::Command::new("mkfifo").arg(above.path().join("pipe")).status().unwrap();
+        assert!(made.success());
+        for name in ["device", "pipe"] {
+            assert!(folder.read(name).unwrap_err().to_string().contains("not a regular file"), "{name}");
+        }
+    }
+
     #[test]
     fn drafts_of_the_dead_go_and_nothing_else() {
         let above = tempfile::tempdir().unwrap();

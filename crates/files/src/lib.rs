@@ -14,10 +14,12 @@ mod disk;
 mod error;
 mod folder;
 mod lock;
+mod regular_file;
 mod simulated;
 
 pub use disk::{Disk, Draft, SystemDisk};
 pub use error::FileError;
 pub use folder::Folder;
 pub use lock::{Lock, LockError};
+pub use regular_file::read_regular;
 pub use simulated::{Fault, SimulatedDisk};

@@ -17,7 +17,6 @@ mod materials;
 mod narrow;
 mod outline;
 mod presets;
-mod regular_file;
 mod scene;
 mod settings;
 mod simulation_hash;

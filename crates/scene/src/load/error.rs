@@ -2,7 +2,7 @@
 
 use super::source::SceneSource;
 use crate::fault::SceneFault;
-use crate::regular_file::read_regular;
+use fissure_files::read_regular;
 use std::ops::Range;
 use std::path::Path;
 

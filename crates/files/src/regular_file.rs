@@ -9,8 +9,8 @@ use std::path::Path;
 /// A pipe or a device is refused before it is opened: reading it might never end.
 ///
 /// # Errors
-/// When the file cannot be read, is not a regular one, or is larger.
-pub(crate) fn read_regular(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+/// When the file cannot be read, is not a regular one, is larger, or does not fit into memory.
+pub fn read_regular(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let about = std::fs::metadata(path)?;
     if about.is_dir() {
         return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder"));
@@ -25,9 +25,11 @@ pub(crate) fn read_regular(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     if about.len() > most {
         return Err(too_large(about.len()));
     }
-    let mut bytes = Vec::with_capacity(about.len() as usize);
+    let mut bytes = Vec::new();
+    // A file of holes may be longer than all memory.
+    bytes.try_reserve_exact(usize::try_from(about.len()).unwrap_or(usize::MAX))?;
     // A file that grows while it is read counts as it is at the end.
-    File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
+    File::open(path)?.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most { Err(too_large(bytes.len() as u64)) } else { Ok(bytes) }
 }
 
