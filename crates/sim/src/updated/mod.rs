@@ -244,16 +244,30 @@ impl Updated {
         !self.state.cracks.is_empty()
     }
 
+    /// Cells in the boxes around the segments of all cracks where they are now: what a division lists.
+    fn crack_cells(&self) -> f64 {
+        let segments = self.state.cracks.iter().flat_map(|now| now.position.windows(2));
+        segments.map(|w| ((w[1] - w[0]).abs() / self.scene.cell_size).add_scalar(1.0).product()).sum()
+    }
+
+    /// Cells that cracks may reach over: far more than lie in the bodies.
+    fn most_crack_cells(&self) -> f64 {
+        (4.0 * self.particles.len() as f64).max(1e6)
+    }
+
     /// The cracks where they are now, ready to divide pairs.
     fn division_now(&self, cracks: &[Crack]) -> Division {
         // A line from a particle inside the body to a node outside may pass a mouth by as much as the kernel reaches.
         let reach = 0.5 * kernel::width(self.settings.kernel) as f64;
         let beyond = 2.0 * reach * self.scene.cell_size;
+        // Lines that are torn too long end the next step; till then they lie at rest.
+        let holds = self.crack_cells() <= self.most_crack_cells();
+        let points = |crack: &Crack, now: &CrackNow| if holds { now.position.clone() } else { crack.points.clone() };
         let lines: Vec<CrackLine> = cracks
             .iter()
             .zip(&self.state.cracks)
             .enumerate()
-            .map(|(i, (crack, now))| crack.line(i, now.position.clone(), beyond))
+            .map(|(i, (crack, now))| crack.line(i, points(crack, now), beyond))
             .collect();
         Division::new(
             &lines,

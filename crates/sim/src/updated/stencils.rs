@@ -244,6 +244,9 @@ impl Updated {
         }
         self.cut.nodes = self.grid.len();
         if self.has_cracks() {
+            if self.crack_cells() > self.most_crack_cells() {
+                return Err(self.torn(time));
+            }
             self.division = self.division_now(cracks);
             self.divide_stencils();
         }
@@ -258,6 +261,19 @@ impl Updated {
         let lowest = self.state.points.iter().map(|p| lattice.of(p.position));
         grid.lay(lowest, kernel::width(self.settings.kernel), ROOM);
         self.grid = grid;
+    }
+
+    /// The longest segment of all cracks has been torn apart.
+    fn torn(&self, time: f64) -> SimulationError {
+        let segments = self.state.cracks.iter().flat_map(|now| now.position.windows(2));
+        let longest = segments.max_by(|a, b| (a[1] - a[0]).norm().total_cmp(&(b[1] - b[0]).norm()));
+        let (a, b) = longest.map_or((Point::origin(), Point::origin()), |w| (w[0], w[1]));
+        let cause = format!(
+            "the material has torn a crack apart, from there to ({:e}, {:e}) m; end the run before (`frames.last`), or use a smaller \
+             `solver.courant` if it was thrown off",
+            b.x, b.y
+        );
+        SimulationError::Unstable { time, x: a.x, y: a.y, cause }
     }
 
     /// The particle farthest from the middle of all has left.

@@ -49,6 +49,21 @@ fn cracked_plate(spacing: f64) -> Scene {
     scene
 }
 
+/// A crack that is torn over more cells than there are particles to divide ends the run: filed in full it takes all memory.
+#[test]
+fn a_crack_that_is_torn_far_apart_is_told() {
+    let mut run = Run::new(&cracked_plate(0.05));
+    run.solver.state.cracks[0].position[1] = Point::new(3e4, -2e4);
+    // Growing rebuilds the division before the next step looks.
+    let cracks = run.cracks.clone();
+    run.solver.take_up(&cracks, &[]);
+    let found = run.solver.step(&cracks, 0.0, 1e-9, &mut |_| ());
+    assert!(
+        matches!(&found, Err(SimulationError::Unstable { cause, .. }) if cause.contains("a crack apart")),
+        "{found:?}"
+    );
+}
+
 /// Truth: Newton's first law. Stresses are started by a velocity field that is not uniform; 40 steps of at most 1e3 additions per node keep 1e-12.
 #[test]
 fn momentum_is_conserved_by_every_kernel_and_transfer_across_a_crack() {
