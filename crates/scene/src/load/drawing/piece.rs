@@ -1,8 +1,10 @@
 //! The paths of an element, with all that decides which area they cover.
 
+use super::ROUNDING;
 use super::area::{Area, FillRule, Grid, GridPoint};
 use super::flatten::{Budget, Polyline, flatten};
 use super::stroke::stroke_outline;
+use crate::geometry::Point;
 use crate::load::seating::Complaint;
 use kurbo::{Affine, BezPath, PathEl, Rect};
 use std::collections::HashMap;
@@ -151,7 +153,9 @@ impl Tracing {
 
     /// What a path in metres fills; open subpaths are closed by a straight line, as SVG does.
     fn fill(&mut self, path: &BezPath, rule: FillRule) -> Result<Area, Complaint> {
-        let lines = flatten(path, self.tolerance, &mut self.budget)?;
+        let mut lines = flatten(path, self.tolerance, &mut self.budget)?;
+        // What a map collapses to a line covers nothing, and its edges, all on one another, would be split without end.
+        lines.retain(|(points, _)| !is_flat(points, ROUNDING * self.tolerance));
         let snap = |(points, _): Polyline| points.into_iter().map(|p| self.grid.snap(p)).collect();
         let rings: Vec<Vec<GridPoint>> = lines.into_iter().map(snap).collect();
         self.budget.spend_crossings(rings.iter().map(Vec::as_slice))?;
@@ -183,6 +187,14 @@ impl Tracing {
         self.clips.insert(key, area.clone());
         Ok(area)
     }
+}
+
+/// Whether `points` lie within `width` of one line [m].
+fn is_flat(points: &[Point], width: f64) -> bool {
+    let Some(&first) = points.first() else { return true };
+    let farthest = points.iter().map(|p| p - first).max_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()));
+    let along = farthest.and_then(|along| along.try_normalize(0.0));
+    along.is_none_or(|along| points.iter().all(|p| along.perp(&(p - first)).abs() <= width))
 }
 
 /// A bound on the factor by which a map stretches lengths.
