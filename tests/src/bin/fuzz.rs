@@ -16,6 +16,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
+use tempfile::TempDir;
 
 /// Memory that one input may take [bytes].
 const MEMORY: usize = 500 << 20;
@@ -89,7 +90,7 @@ fn again(campaign: &Campaign, index: u64) -> ExitCode {
 /// Starts children until all inputs are done; gives whether none was at fault.
 fn watch(campaign: &Campaign) -> std::io::Result<bool> {
     let start = Instant::now();
-    let folder = tempfile::tempdir()?;
+    let folder = working_folder()?;
     let status = folder.path().join("status");
     let mut tally = Tally::default();
     let mut from = 0;
@@ -100,6 +101,8 @@ fn watch(campaign: &Campaign) -> std::io::Result<bool> {
             .args(["--child", campaign.target.name()])
             .args([count.to_string(), campaign.seed.to_string(), from.to_string()])
             .arg(&status)
+            // What a child that dies leaves behind goes with our folder.
+            .env("TMPDIR", folder.path())
             .spawn()?;
         let end = child.wait()?;
         tally.add(&status.with_extension("tally"));
@@ -119,14 +122,20 @@ fn watch(campaign: &Campaign) -> std::io::Result<bool> {
         tally.done += 1;
         from = index + 1;
     }
-    let Tally { done, accepted, panics } = tally;
+    let Tally { done, accepted, panics, slowest: (slowest, slowest_index) } = tally;
     let seconds = start.elapsed().as_secs_f64();
     let name = campaign.target.name();
     say(&format!(
         "{name}: {done} inputs, seed {}, {accepted} accepted, {panics} panics, {aborts} aborts, {late} late, {seconds:.0} s",
         campaign.seed
     ));
+    say(&format!("slowest: input {slowest_index}, {slowest} ms"));
     Ok(panics + aborts + late == 0)
+}
+
+/// A folder for temporary files: in memory where the system has one there, since a disk is slow to take a file for every input.
+fn working_folder() -> std::io::Result<TempDir> {
+    tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir())
 }
 
 /// Inputs of one child when the time decides.
@@ -138,16 +147,19 @@ struct Tally {
     done: u64,
     accepted: u64,
     panics: u64,
+    /// Most milliseconds that an input took, and its number.
+    slowest: (u64, u64),
 }
 
 impl Tally {
     fn add(&mut self, file: &Path) {
         let text = std::fs::read_to_string(file).unwrap_or_default();
         let numbers: Vec<u64> = text.split_whitespace().filter_map(|word| word.parse().ok()).collect();
-        if let [done, accepted, panics] = numbers[..] {
+        if let [done, accepted, panics, milliseconds, index] = numbers[..] {
             self.done += done;
             self.accepted += accepted;
             self.panics += panics;
+            self.slowest = self.slowest.max((milliseconds, index));
         }
     }
 }
@@ -171,7 +183,9 @@ fn child(campaign: &Campaign, from: u64, status: &Path) -> ExitCode {
     let mut tally = Tally::default();
     let mut refusals = BTreeMap::<String, (u64, u64)>::new();
     let keep_tally = |tally: &Tally| {
-        std::fs::write(status.with_extension("tally"), format!("{} {} {}", tally.done, tally.accepted, tally.panics))
+        let Tally { done, accepted, panics, slowest: (milliseconds, index) } = tally;
+        let line = format!("{done} {accepted} {panics} {milliseconds} {index}");
+        std::fs::write(status.with_extension("tally"), line)
     };
     for index in from..campaign.count {
         let input = bench.input(campaign.target, campaign.seed, index);
@@ -181,7 +195,9 @@ fn child(campaign: &Campaign, from: u64, status: &Path) -> ExitCode {
         }
         // A limit below what is allocated already is refused, and the one before holds.
         let _ = ALLOCATOR.set_limit(ALLOCATOR.allocated() + MEMORY);
+        let start = Instant::now();
         let outcome = catch_unwind(AssertUnwindSafe(|| bench.run(campaign.target, &input)));
+        tally.slowest = tally.slowest.max((start.elapsed().as_millis() as u64, index));
         let _ = ALLOCATOR.set_limit(usize::MAX);
         tally.done += 1;
         match outcome {

@@ -2,7 +2,11 @@
 
 use super::schema;
 use crate::fault::{Key, KeyPath, nearest};
+use std::sync::LazyLock;
 use toml::Value;
+
+/// The schema, made once: making it takes longer than reading a scene.
+static SCHEMA: LazyLock<serde_json::Value> = LazyLock::new(schema);
 
 /// Turns the message of the deserializer into ours, and into what to do. `path`: where it happened; for an unknown key it gets to point at the key.
 /// `file`: everything that was written.
@@ -18,7 +22,7 @@ pub(super) fn explain(message: &str, path: &mut KeyPath, file: &Value) -> (Strin
         let owner = KeyPath(path.0[..path.0.len() - 1].to_vec()).to_string();
         let whose = if owner.is_empty() { "of a scene".to_owned() } else { format!("of `{owner}`") };
         let message = format!("unknown key `{unknown}` {whose}");
-        let of_the_scene = schema()["properties"].get(&unknown).is_some();
+        let of_the_scene = SCHEMA["properties"].get(&unknown).is_some();
         let remedy = match (owner.is_empty(), of_the_scene) {
             // In TOML everything below a heading belongs to it.
             (false, true) => {
@@ -154,8 +158,7 @@ fn at<'v>(file: &'v Value, path: &KeyPath) -> Option<&'v Value> {
 
 /// The forms of a key that is one of several words or tables of one key, as one writes them; none for other keys.
 fn choices(path: &KeyPath) -> Option<String> {
-    let schema = schema();
-    let forms = forms(&schema, find(&schema, path)?);
+    let forms = forms(&SCHEMA, find(&SCHEMA, path)?);
     let mut found: Vec<String> = Vec::new();
     for form in &forms {
         let word = |value: &serde_json::Value| value.as_str().map(|word| format!("`\"{word}\"`"));
@@ -177,8 +180,7 @@ fn choices(path: &KeyPath) -> Option<String> {
 
 /// What the schema says of the key at a path.
 fn description(path: &KeyPath) -> Option<String> {
-    let schema = schema();
-    let text = find(&schema, path)?.get("description")?.as_str()?;
+    let text = find(&SCHEMA, path)?.get("description")?.as_str()?;
     Some(text.split_whitespace().collect::<Vec<_>>().join(" ").trim_end_matches('.').to_owned())
 }
 
