@@ -65,7 +65,9 @@ fn a_limit_of_the_shell_is_kept() {
         Command::new("sh").current_dir(folder.path()).args(["-c", &line]).output().unwrap();
     let said = String::from_utf8(stderr).unwrap();
     assert_eq!(status.code(), Some(2), "{said}");
-    assert!(said.contains("more than the 390 MiB that are free"), "{said}");
+    let free = said.split_once("more than the ").and_then(|(_, rest)| rest.split_once(" MiB that are free"));
+    // The program itself and its threads have some of the 390 MiB.
+    assert!(free.is_some_and(|(free, _)| free.parse::<u64>().unwrap() < 350), "{said}");
 }
 
 /// Truth: the largest memory that the system has seen the run take.
