@@ -6,7 +6,7 @@ mod common;
 use common::{Folder, PLATE, paint, scene_with};
 use fissure_scene::{
     BoxSide, ColliderShape, Kernel, LoadErrorKind, LoadKind, Point, Scene, Selection, SolverPreset, Transfer, load,
-    schema, solver_preset, template,
+    load_with_warnings, schema, solver_preset, template,
 };
 use std::path::PathBuf;
 
@@ -363,4 +363,21 @@ fn a_crack_runs_through_several_bodies() {
     assert_eq!(cracks, [(1, true, false), (0, false, true)]);
     let only = load("body = 'plate'\n").unwrap();
     assert_eq!((only.cracks.len(), only.cracks[0].body, only.cracks[0].name.as_str()), (1, 0, "crack-1"));
+}
+
+/// Truth: the construction, two plates of 10 mm joined by a neck of 0.4 mm at a spacing of 1 mm.
+#[test]
+fn a_narrow_neck_is_warned_of_with_its_line() {
+    let outline = "[0, 0], [10, 0], [10, 4.8], [20, 4.8], [20, 0], [30, 0], [30, 10], [20, 10], [20, 5.2], [10, 5.2], [10, 10], [0, 10]";
+    let text = format!(
+        "[[body]]\nname = 'plates'\nmaterial = 'pmma'\nshape = {{ polygon = [{outline}] }}\n[grid]\nparticle_spacing = 1\n"
+    );
+    let folder = Folder::new(&text, None);
+    let loaded = load_with_warnings(&folder.path(), &[]).unwrap();
+    let warning = loaded.warnings.iter().find(|w| w.message.contains("body `plates`")).expect("a warning");
+    for words in ["0.4 m wide", "0.40 particle spacings"] {
+        assert!(warning.message.contains(words), "{}", warning.message);
+    }
+    assert!(warning.remedy.contains("0.2 m or less"), "{}", warning.remedy);
+    assert_eq!(loaded.place(&warning.path).line(), Some(4));
 }

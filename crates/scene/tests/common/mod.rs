@@ -6,6 +6,7 @@ pub mod take;
 use fissure_scene::{Region, Scene, ToughnessKind, ToughnessPatch, load};
 use png::{BitDepth, ColorType};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 use tempfile::TempDir;
 
 /// A folder with a scene and, if given, a drawing beside it.
@@ -59,4 +60,10 @@ pub fn regions_of(svg: &str) -> Vec<Region> {
         ToughnessKind::Image(_) => None,
     };
     patches.into_iter().filter_map(region).collect()
+}
+
+/// How long the processor has worked for this thread: unlike the time of the clock it does not grow with what else the machine does.
+pub fn work() -> Duration {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec.unsigned_abs() as u32)
 }
