@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-const TAKE: &str = "/work/plate.take";
+const TAKE: &str = "/plate.take";
 const LAST: i64 = 5;
 
 fn folder(disk: &SimulatedDisk) -> Folder {
