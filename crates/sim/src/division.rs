@@ -12,7 +12,7 @@
 
 use crate::crossing::{NetCrossing, Side, crossing};
 use fissure_scene::{Point, TipDivision, Vector, orientation};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// What a line crosses: sorted (crack, side of the particle); empty: nothing.
 pub(crate) type CrossedSet = Vec<(u32, Side)>;
@@ -120,7 +120,8 @@ pub(crate) struct Division {
     particle_spacing: f64,
     /// How far from its segments a crack may divide pairs, along each axis [cells].
     reach: f64,
-    buckets: HashMap<(i64, i64), Vec<(u32, u32)>>,
+    /// Line and segment by cell. Cells come from the scene, not from a stranger, so the hash need not be a strong one.
+    buckets: FxHashMap<(i64, i64), Vec<(u32, u32)>>,
     has_junctions: bool,
 }
 
@@ -135,7 +136,7 @@ impl Division {
         reach: f64,
     ) -> Self {
         let lines: Vec<Line> = lines.iter().map(|l| prepare(l, tip_division, cut, cell_size)).collect();
-        let mut buckets: HashMap<(i64, i64), Vec<(u32, u32)>> = HashMap::new();
+        let mut buckets: FxHashMap<(i64, i64), Vec<(u32, u32)>> = FxHashMap::default();
         for (line_index, line) in lines.iter().enumerate() {
             for (segment_index, &(a, b)) in line.segments.iter().enumerate() {
                 let low = a.inf(&b).coords / cell_size - Vector::repeat(reach);
