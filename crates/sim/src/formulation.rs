@@ -2,7 +2,7 @@
 
 use crate::SimulationError;
 use crate::crack::Crack;
-use crate::elastic::Elastic;
+use crate::material::elastic::Elastic;
 use crate::particles::Particles;
 use crate::solver::{Handover, Solver};
 use crate::total::Total;

@@ -1,7 +1,7 @@
 //! How much memory a run takes: counted from the sizes of what it holds, before any of it is there.
 
 use crate::SimulationError;
-use crate::kernel;
+use crate::grid::kernel;
 use crate::total::Total;
 use crate::updated::Updated;
 use fissure_scene::{Formulation, Matrix, OnDistortion, Point, Scene, Vector, polyline_length};

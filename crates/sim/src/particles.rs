@@ -1,9 +1,9 @@
 //! Laying particles into bodies, and picking some of them.
 
 use crate::SimulationError;
-use crate::scan::Places;
-use crate::selector::Selector;
-use crate::spans::{Span, SpanRows};
+use crate::boundary::selector::Selector;
+use crate::grid::scan::Places;
+use crate::grid::spans::{Span, SpanRows};
 use fissure_scene::{KeyPath, Point, Region, Scene, SceneFault, Selection, Vector, bounds};
 use std::ops::Range;
 

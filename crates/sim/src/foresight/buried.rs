@@ -1,6 +1,6 @@
 //! Bodies that begin inside of a collider.
 
-use crate::collider::Obstacle;
+use crate::boundary::collider::Obstacle;
 use crate::particles::Particles;
 use fissure_scene::{Contact, KeyPath, Scene, SceneFault};
 

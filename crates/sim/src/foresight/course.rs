@@ -1,8 +1,8 @@
 //! How far tips have to go, and how far they may come.
 
 use super::toughness;
-use crate::collider::Obstacle;
-use crate::elastic::Elastic;
+use crate::boundary::collider::Obstacle;
+use crate::material::elastic::Elastic;
 use crate::particles::distance_to_rings;
 use fissure_scene::{Crack, End, Point, Region, Scene, Vector, polyline_length};
 

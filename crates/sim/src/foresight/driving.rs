@@ -2,8 +2,8 @@
 
 use super::samples::Samples;
 use super::width::width;
-use crate::elastic::Elastic;
 use crate::formulation::impact_speed;
+use crate::material::elastic::Elastic;
 use fissure_scene::{Point, Scene, Support, Vector};
 
 /// Times at which motions are looked at.

@@ -1,8 +1,8 @@
 //! Which particles the grid holds together: those that share a node, directly or through others.
 
-use crate::kernel::axis_stencil;
+use crate::grid::kernel::axis_stencil;
+use crate::grid::spans::Span;
 use crate::particles::Particles;
-use crate::spans::Span;
 use fissure_scene::Scene;
 
 /// The number of the group that each particle belongs to. Cracks are left aside. Time goes with the number of rows of particles and of gaps in them.
@@ -107,7 +107,7 @@ impl Union {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::kernel::Stencil;
+    use crate::grid::kernel::Stencil;
     use crate::test_scenes::{add_body, free_body, rectangle};
     use fissure_scene::{Kernel, Point};
     use proptest::prelude::*;

@@ -20,7 +20,7 @@ mod width;
 pub(crate) use course::Course;
 pub(crate) use strain::overload;
 
-use crate::elastic::Elastic;
+use crate::material::elastic::Elastic;
 use crate::particles::Particles;
 use fissure_scene::{Scene, SceneFault, Warning};
 

@@ -2,7 +2,7 @@
 
 use super::course::DrawnTip;
 use super::samples::two_digits;
-use crate::elastic::Elastic;
+use crate::material::elastic::Elastic;
 use fissure_scene::{KeyPath, Scene, Vector, Warning};
 
 /// Frames a crack should be seen to run in, at least.

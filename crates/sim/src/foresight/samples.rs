@@ -1,7 +1,7 @@
 //! A body as a few thousand places with mass, and the loads as forces at places: what estimates are made of.
 
+use crate::boundary::selector::Selector;
 use crate::particles::Particles;
-use crate::selector::Selector;
 use fissure_scene::{LoadKind, Point, Scene, Selection, Vector};
 
 /// Places along the larger side of the box around all bodies.

@@ -2,8 +2,8 @@
 
 use super::samples::{Samples, two_digits};
 use super::width::width;
-use crate::elastic::Elastic;
 use crate::formulation::impact_speed;
+use crate::material::elastic::Elastic;
 use fissure_scene::{BoxSide, KeyPath, Load, LoadKind, Scene, Selection, Vector, Warning, material_preset};
 
 /// Strain from which on a load is a slip of the pen, or the modulus is: what cracks breaks long before.

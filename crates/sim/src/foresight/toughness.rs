@@ -4,7 +4,7 @@ use super::course::DrawnTip;
 use super::driving::stress_of_motions;
 use super::samples::{PlacedForce, Samples, two_digits};
 use super::section::{Section, balanced_forces};
-use crate::elastic::Elastic;
+use crate::material::elastic::Elastic;
 use fissure_scene::{KeyPath, LoadKind, Scene, Vector, Warning};
 use std::f64::consts::PI;
 

@@ -7,7 +7,7 @@ use super::heading::turned;
 use super::obstacle::first_obstacle;
 use super::{LAST_LIGAMENT, way};
 use crate::crack::{Crack, Measured, slot};
-use crate::elastic::Elastic;
+use crate::material::elastic::Elastic;
 use fissure_scene::{End, Point, Scene};
 
 /// Length of new branches, in cells. At the default angle their tips are then 3.6 cells apart: each has the smallest radius of an integral for itself.

@@ -1,8 +1,8 @@
 //! Where a tip wants to go: by the stress, by a drawn path, or by both.
 
 use crate::crack::{Crack, DIRECTION_LENGTH, Measured, slot};
-use crate::elastic::Elastic;
-use crate::measure::KINK;
+use crate::material::elastic::Elastic;
+use crate::tip::gauge::KINK;
 use fissure_scene::{End, Scene, TipState, Vector};
 
 /// Distance over which the direction of a running tip is averaged, in cells.

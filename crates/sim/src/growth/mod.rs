@@ -18,7 +18,7 @@ pub(crate) use seeking::toughness_at;
 pub(crate) use speed::speed_limit;
 
 use crate::crack::{Crack, DIRECTION_LENGTH, Measured, slot};
-use crate::measure::Reading;
+use crate::tip::gauge::Reading;
 use fissure_scene::{CrackEnd, End, Point, Scene, TipState, Vector};
 use heading::{physical_way, way};
 use obstacle::{beside, first_obstacle};

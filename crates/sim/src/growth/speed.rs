@@ -1,7 +1,7 @@
 //! How fast a tip may run.
 
 use crate::crack::Crack;
-use crate::elastic::Elastic;
+use crate::material::elastic::Elastic;
 use fissure_scene::{End, Scene};
 
 /// Highest speed of a tip at `time` [m/s]: the scene's fraction of the Rayleigh wave speed of the material at the tip, or the material's own limit.

@@ -4,8 +4,8 @@ use super::Simulation;
 use crate::SimulationError;
 use crate::crack::{Crack, ENDS, Measured, Tip, slot};
 use crate::growth::{self, Advance, Cost};
-use crate::measure::Gauge;
 use crate::solver::Observed;
+use crate::tip::gauge::Gauge;
 use fissure_scene::{CrackEnd, End, Point, TipState, Vector};
 
 /// Increments one tip may take in one step: with a step of 0.9 h/c_d and quarter cells, more would be faster than any wave.

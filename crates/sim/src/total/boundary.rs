@@ -4,7 +4,7 @@ use super::Total;
 use super::cut::Probe;
 use super::refresh::Near;
 use crate::SimulationError;
-use crate::selector::Selector;
+use crate::boundary::selector::Selector;
 use fissure_scene::{LoadKind, Point, Selection, Vector};
 
 /// A force at a place of the material.

@@ -9,8 +9,8 @@
 use super::Total;
 use super::refresh::Near;
 use crate::crack::Crack;
-use crate::crossing::Side;
-use crate::division::{CrossedSet, facing};
+use crate::crack::crossing::Side;
+use crate::crack::division::{CrossedSet, facing};
 use fissure_scene::{Point, Vector};
 
 /// Two fields of one node on the two sides of one crack.

@@ -2,7 +2,7 @@
 
 use super::{FieldVectors, NONE, Run, Total};
 use crate::crack::Crack;
-use crate::crossing::Side;
+use crate::crack::crossing::Side;
 use crate::grid::Walker;
 use crate::saved::{self, Fits};
 use fissure_scene::{CrackEnd, Matrix, Point, Vector};

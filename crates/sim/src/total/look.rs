@@ -5,8 +5,10 @@ use super::reader::Rates;
 use super::{FieldVectors, Total, left_of_tip};
 use crate::SimulationError;
 use crate::crack::{Crack, DIRECTION_LENGTH};
-use crate::look::{crack_frame, side_of, tip_of, turn};
-use crate::solver::{FaceContact, Observed, QuadraturePoint, TipZone};
+use crate::faces::crack_frame::crack_frame;
+use crate::solver::Observed;
+use crate::tip::frame::{side_of, tip_of, turn};
+use crate::tip::zone::{FaceContact, QuadraturePoint, TipZone};
 use fissure_scene::{CrackFrame, End, Matrix, OutlineFrame, ParticleFrame, Point, Vector};
 
 /// A moment in the middle of a step: displacements and accelerations of the step's beginning, velocities half a step later.

@@ -2,7 +2,7 @@
 
 use super::Total;
 use super::cut::{Entry, Probe};
-use crate::kernel;
+use crate::grid::kernel;
 use crate::memory::{Amounts, Need};
 use fissure_scene::{Kernel, Scene};
 

@@ -8,9 +8,9 @@ use super::Total;
 use super::cut::Entry;
 use super::refresh::Near;
 use super::tie::key;
+use crate::crack::crossing::Side;
 use crate::crack::{Crack, slot};
-use crate::crossing::Side;
-use crate::kernel;
+use crate::grid::kernel;
 use fissure_scene::{CrackEnd, End, Matrix, Point, Vector, bounds};
 
 /// Stencils are laid anew within so many cells of what has changed of a crack: the window of the division, the kernel, and some room.

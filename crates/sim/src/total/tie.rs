@@ -19,10 +19,10 @@
 
 use super::refresh::Near;
 use super::{FieldVectors, Total};
+use crate::crack::division::{CrossedSet, WINDOW, facing};
 use crate::crack::{Crack, ENDS, slot};
-use crate::division::{CrossedSet, WINDOW, facing};
-use crate::elastic::Elastic;
-use crate::kernel;
+use crate::grid::kernel;
+use crate::material::elastic::Elastic;
 use crate::saved::{self, Fits};
 use crate::solver::Release;
 use fissure_scene::{CrackEnd, End, Point, TipDivision, TipState, Vector};

@@ -2,8 +2,8 @@
 
 use super::{MaterialPoint, Updated};
 use crate::SimulationError;
-use crate::collider::PlacedObstacle;
-use crate::selector::Selector;
+use crate::boundary::collider::PlacedObstacle;
+use crate::boundary::selector::Selector;
 use fissure_scene::{LoadKind, Matrix, Point, Selection, Vector};
 
 impl Updated {

@@ -10,9 +10,9 @@
 //! homogeneous deformation on either side. It is a vector of the rest configuration and is measured along the normal at rest.
 
 use super::Updated;
-use crate::crossing::Side;
-use crate::division::facing;
-use crate::kernel;
+use crate::crack::crossing::Side;
+use crate::crack::division::facing;
+use crate::grid::kernel;
 use fissure_scene::{Matrix, Point, Vector};
 
 /// Faces that overlap by less than this part of a cell touch by round-off only.

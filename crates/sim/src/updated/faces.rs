@@ -1,8 +1,8 @@
 //! Crack points with their two faces, and outlines, carried along by the velocities on the grid (thesis 3.1.7).
 
 use super::Updated;
+use crate::crack::crossing::Side;
 use crate::crack::{Crack, slot};
-use crate::crossing::Side;
 use crate::saved::{self, Fits};
 use fissure_scene::{CrackEnd, CrackFrame, End, Matrix, OutlineFrame, Point, Vector};
 use rayon::prelude::*;

@@ -2,8 +2,10 @@
 
 use super::Updated;
 use crate::crack::Crack;
-use crate::look::{crack_frame, side_of, tip_of, turn};
-use crate::solver::{FaceContact, Observed, QuadraturePoint, TipZone};
+use crate::faces::crack_frame::crack_frame;
+use crate::solver::Observed;
+use crate::tip::frame::{side_of, tip_of, turn};
+use crate::tip::zone::{FaceContact, QuadraturePoint, TipZone};
 use fissure_scene::{CrackFrame, End, Matrix, OutlineFrame, ParticleFrame, Point, Vector};
 
 /// A moment in the middle of a step: positions, deformations and accelerations of the step's beginning; velocities on the grid are half a step ahead and

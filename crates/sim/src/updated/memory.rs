@@ -3,7 +3,7 @@
 use super::faces::Tracer;
 use super::stencils::{Entry, Raw};
 use super::{MaterialPoint, Motion, PlasticPart, Updated};
-use crate::kernel;
+use crate::grid::kernel;
 use crate::memory::{Amounts, Need};
 use fissure_scene::{Kernel, Matrix, Scene, Transfer, Vector};
 

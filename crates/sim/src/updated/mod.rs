@@ -20,12 +20,12 @@ mod tests;
 mod transfer;
 
 use crate::SimulationError;
-use crate::collider::Obstacle;
+use crate::boundary::collider::Obstacle;
 use crate::crack::Crack;
-use crate::division::{CrackLine, Division, TipCut};
-use crate::elastic::Elastic;
+use crate::crack::division::{CrackLine, Division, TipCut};
 use crate::grid::Grid;
-use crate::kernel;
+use crate::grid::kernel;
+use crate::material::elastic::Elastic;
 use crate::particles::Particles;
 use crate::saved::{self, Fits};
 use crate::solver::{Handover, Observed, Solver, SolverEnergies};

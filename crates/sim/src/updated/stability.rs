@@ -1,8 +1,8 @@
 //! The largest stable time step.
 
 use super::Updated;
-use crate::elastic::Elastic;
-use crate::kernel::axis_stencil;
+use crate::grid::kernel::axis_stencil;
+use crate::material::elastic::Elastic;
 use fissure_scene::{Kernel, Scene};
 
 /// Places of a particle between two nodes at which a kernel is tried.

@@ -3,10 +3,10 @@
 use super::Updated;
 use crate::SimulationError;
 use crate::crack::Crack;
-use crate::division::CrossedSet;
+use crate::crack::division::CrossedSet;
+use crate::grid::kernel::{self, Stencil};
+use crate::grid::spans::{Span, SpanRows};
 use crate::grid::{Grid, Walker};
-use crate::kernel::{self, Stencil};
-use crate::spans::{Span, SpanRows};
 use fissure_scene::{Kernel, Point, Vector};
 use rayon::prelude::*;
 

@@ -1,7 +1,12 @@
 //! Cracks while they live: where they run at rest, what their ends are, how far their tips have come.
 
-use crate::division::{CrackLine, LineEnd};
-use crate::guide::GuideWalk;
+pub(crate) mod crossing;
+pub(crate) mod division;
+pub(crate) mod fragments;
+pub(crate) mod guide;
+
+use crate::crack::division::{CrackLine, LineEnd};
+use crate::crack::guide::GuideWalk;
 use crate::saved::{self, Fits};
 use fissure_scene::{CrackEnd, End, Point, Scene, TipRecord, TipState, Vector, polyline_length};
 use serde::{Deserialize, Serialize};

@@ -10,7 +10,7 @@
 //! split ([`TipCut`]). Gradients follow the product rule, ∇(b w) = b ∇w + w ∇b. The jump then ends at the tip. Where ties hold the two sides of a node together until the
 //! tip has passed it, nothing is shared: the pair is split as if the crack went on straight ahead.
 
-use crate::crossing::{NetCrossing, Side, crossing};
+use crate::crack::crossing::{NetCrossing, Side, crossing};
 use fissure_scene::{Point, TipDivision, Vector, orientation};
 use rustc_hash::FxHashMap;
 

@@ -1,8 +1,8 @@
-//! What looking at a crack has in common in both formulations: where its tip is, which face a place sees, how its faces make a frame.
+//! The frame of a tip: where it is, where it points, and which face of its crack a place sees.
 
-use crate::crack::{Crack, DIRECTION_LENGTH, ENDS, chord_start, slot};
-use crate::crossing::Side;
-use fissure_scene::{CrackEnd, CrackFrame, End, Matrix, Point, Vector, orientation};
+use crate::crack::crossing::Side;
+use crate::crack::{Crack, DIRECTION_LENGTH, chord_start};
+use fissure_scene::{End, Matrix, Point, Vector, orientation};
 
 /// Segments behind a tip that are looked at for the side of a place; more than any integral reaches.
 const SEGMENTS_BEHIND: usize = 40;
@@ -46,35 +46,4 @@ pub(crate) fn side_of(points: &[Point], end: End, ahead: Vector, place: Point) -
         }
     }
     if sign >= 0.0 { Side::Above } else { Side::Below }
-}
-
-/// The frame of a crack from the places and velocities of its faces, above and below; they meet at a tip.
-pub(crate) fn crack_frame(
-    index: usize,
-    crack: &Crack,
-    faces: [Vec<Point>; 2],
-    velocities: [Vec<Vector>; 2],
-) -> CrackFrame {
-    let [mut above, mut below] = faces;
-    let [mut above_velocity, mut below_velocity] = velocities;
-    for end in ENDS {
-        if crack.ends[slot(end)] == CrackEnd::Tip {
-            let k = if end == End::Start { 0 } else { above.len() - 1 };
-            let middle = nalgebra::center(&above[k], &below[k]);
-            let velocity = (above_velocity[k] + below_velocity[k]) * 0.5;
-            (above[k], below[k]) = (middle, middle);
-            (above_velocity[k], below_velocity[k]) = (velocity, velocity);
-        }
-    }
-    CrackFrame {
-        crack: index as u32,
-        body: crack.body,
-        rest: crack.points.clone(),
-        above,
-        below,
-        above_velocity,
-        below_velocity,
-        start: crack.ends[0],
-        end: crack.ends[1],
-    }
 }

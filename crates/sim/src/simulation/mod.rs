@@ -1,11 +1,12 @@
 //! The simulation as its users see it: steps, what is measured at the tips, growth, frames.
 
+use crate::crack::fragments;
 use crate::crack::{Crack, ENDS, slot};
-use crate::elastic::Elastic;
 use crate::formulation::{self, Choice};
+use crate::material::elastic::Elastic;
 use crate::particles::Particles;
 use crate::solver::Solver;
-use crate::{SimulationError, foresight, memory, pieces, saved};
+use crate::{SimulationError, foresight, memory, saved};
 use fissure_scene::{Energies, Formulation, Frame, Pose, Scene, TipRecord, Vector};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
@@ -143,7 +144,7 @@ impl Simulation {
                 first_energy: 0.0,
                 most_work: 0.0,
                 interval: 0.0,
-                pieces: pieces::of_bodies(&particles),
+                pieces: fragments::of_bodies(&particles),
             },
             particles,
             stable_time_step: 0.0,
@@ -310,7 +311,7 @@ impl Simulation {
 
     fn collider_poses(&self) -> Vec<Pose> {
         let time = self.state.time;
-        self.scene.colliders.iter().map(|c| crate::collider::Obstacle::new(c).at(time).pose()).collect()
+        self.scene.colliders.iter().map(|c| crate::boundary::collider::Obstacle::new(c).at(time).pose()).collect()
     }
 
     /// Runs to the next frame. `watch` is called after every step; when it breaks, the run stops in mid-frame and `false` is returned: the
@@ -400,7 +401,7 @@ impl Simulation {
     }
 
     fn split_pieces(&mut self) {
-        pieces::split(&self.particles, &self.state.cracks, self.scene.cell_size, &mut self.state.pieces);
+        fragments::split(&self.particles, &self.state.cracks, self.scene.cell_size, &mut self.state.pieces);
     }
 
     /// The whole state at a frame boundary, for [`Simulation::restore`].

@@ -10,9 +10,9 @@
 //! what it is, zero, and K_II is short of what friction carries.
 //! Sources: Li, Shih & Needleman 1985 (domain form of J); Yau, Wang & Corten 1980 (interaction integral); Nakamura, Shih & Freund 1985 (dynamic terms).
 
-use crate::crossing::Side;
-use crate::elastic::Elastic;
-use crate::solver::{QuadraturePoint, TipZone};
+use crate::crack::crossing::Side;
+use crate::material::elastic::Elastic;
+use crate::tip::zone::{QuadraturePoint, TipZone};
 use crate::williams_fields;
 use fissure_scene::Vector;
 use std::f64::consts::PI;
@@ -186,7 +186,7 @@ fn out_of_core(place: Vector, volume: f64) -> Vector {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::solver::FaceContact;
+    use crate::tip::zone::FaceContact;
     use fissure_scene::{Material, Matrix, PlaneState};
 
     fn elastic(plane: PlaneState) -> Elastic {

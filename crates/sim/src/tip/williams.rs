@@ -1,7 +1,7 @@
 //! The fields around a crack tip, known in closed form: at rest (Williams) and moving steadily (Freund).
 
 use crate::Elastic;
-use crate::stress_intensity::SpeedSquares;
+use crate::tip::stress_intensity::SpeedSquares;
 use fissure_scene::{Matrix, Vector};
 use std::f64::consts::PI;
 

@@ -12,8 +12,13 @@
 //!
 //! A run of nodes side by side is a run of numbers, and a band with the one above it is one piece of memory.
 
-use crate::kernel::{MAX_WIDTH, Stencil};
-use crate::spans::{Span, SpanRows};
+pub(crate) mod fields;
+pub(crate) mod kernel;
+pub(crate) mod scan;
+pub(crate) mod spans;
+
+use crate::grid::kernel::{MAX_WIDTH, Stencil};
+use crate::grid::spans::{Span, SpanRows};
 use fissure_scene::{Point, Vector};
 use std::ops::Range;
 

@@ -3,7 +3,7 @@
 //! Every node has its own field; its degree of freedom has the number of the node. Nodes near cracks have further fields, one for each set
 //! of (crack, side) that particles cross on the way to the node; their number is not limited, and a scene without a crack has none.
 
-use crate::division::CrossedSet;
+use crate::crack::division::CrossedSet;
 use crate::saved::{self, Fits};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

@@ -1,13 +1,14 @@
 //! What a crack tip feels: from the material around it to J, K_I and K_II.
 
 use crate::StressIntensity;
-use crate::contour::{Contour, ContourHalf, ContourSample};
 use crate::crack::Crack;
-use crate::crossing::Side;
-use crate::domain::domain_integrals;
-use crate::elastic::Elastic;
-use crate::kernel::axis_stencil;
-use crate::solver::{Observed, QuadraturePoint, TipZone};
+use crate::crack::crossing::Side;
+use crate::grid::kernel::axis_stencil;
+use crate::material::elastic::Elastic;
+use crate::solver::Observed;
+use crate::tip::contour::{Contour, ContourHalf, ContourSample};
+use crate::tip::domain::domain_integrals;
+use crate::tip::zone::{QuadraturePoint, TipZone};
 use fissure_scene::{End, JMethod, Matrix, ModeSplit, Point, Scene, Vector};
 use std::convert::Infallible;
 

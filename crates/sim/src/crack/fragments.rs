@@ -1,7 +1,7 @@
 //! Which fragment each particle belongs to.
 
 use crate::crack::Crack;
-use crate::division::{CrackLine, Division, LineEnd, TipCut};
+use crate::crack::division::{CrackLine, Division, LineEnd, TipCut};
 use crate::particles::Particles;
 use fissure_scene::{CrackEnd, TipDivision};
 use std::collections::HashMap;

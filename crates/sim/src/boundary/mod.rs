@@ -1,0 +1,4 @@
+//! What acts on bodies from outside, whatever the formulation.
+
+pub(crate) mod collider;
+pub(crate) mod selector;

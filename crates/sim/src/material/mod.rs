@@ -1,0 +1,4 @@
+//! Constitutive laws: formulas on small values.
+
+pub(crate) mod constitutive;
+pub(crate) mod elastic;

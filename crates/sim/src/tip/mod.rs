@@ -1,0 +1,9 @@
+//! What a crack tip feels: the material around it, and what its integrals make of that.
+
+pub(crate) mod contour;
+pub(crate) mod domain;
+pub(crate) mod frame;
+pub(crate) mod gauge;
+pub(crate) mod stress_intensity;
+pub(crate) mod williams;
+pub(crate) mod zone;
