@@ -7,7 +7,8 @@ use crate::failure::Failure;
 use crate::progress::{duration, seconds};
 use crate::report::{self, Report};
 use crate::scene_file;
-use fissure_scene::{Part, Point, Scene, polyline_length};
+use fissure_plane::{Point, polyline_length};
+use fissure_scene::{Part, Scene};
 use fissure_sim::{Estimate, Simulation};
 
 /// Validates a scene and prints what it will cost.

@@ -32,7 +32,7 @@ fn collider_mesh(
     let placed: Vec<Point> = ring.iter().map(|p| pose.position + turn * p.coords).collect();
     let (velocity, spin) = motion(collider, frame.time);
     let grid = Grid::covering(&placed);
-    let (low, high) = fissure_scene::bounds(&ring);
+    let (low, high) = fissure_plane::bounds(&ring);
     grid.check(frame.number, &collider.name, (high - low).amax())?;
     let mut arc = 0.0;
     let mut sources = Vec::with_capacity(ring.len());
@@ -88,7 +88,7 @@ fn ring(shape: &ColliderShape, pose: Pose, scene: &Scene) -> Vec<Point> {
 /// A box below the surface of a half-plane, in its own frame, below the middle of the scene at rest.
 fn slab(normal: Vector, pose: Pose, scene: &Scene) -> Vec<Point> {
     let corners: Vec<Point> = scene.bodies.iter().flat_map(|b| <[Point; 2]>::from(b.region.bounds())).collect();
-    let (low, high) = fissure_scene::bounds(&corners);
+    let (low, high) = fissure_plane::bounds(&corners);
     let diagonal = (high - low).norm();
     let tangent = Vector::new(normal.y, -normal.x);
     let middle = nalgebra::Rotation2::new(-pose.angle) * (nalgebra::center(&low, &high) - pose.position);

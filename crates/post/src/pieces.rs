@@ -88,7 +88,7 @@ impl Rows {
     fn new(shape: &Shape, grid: Grid) -> Self {
         let edges: Vec<_> = shape.iter().flatten().map(|e| (grid.place(e.a), grid.place(e.b))).collect();
         let corners: Vec<Point> = edges.iter().map(|e| e.0).collect();
-        let (low, high) = fissure_scene::bounds(&corners);
+        let (low, high) = fissure_plane::bounds(&corners);
         let count = edges.len().clamp(1, 1024);
         let height = (high.y - low.y) / count as f64;
         let mut rows = Self { low, high, height, rows: vec![Vec::new(); count] };

@@ -5,7 +5,8 @@
 
 use crate::snap::Grid;
 use crate::source::{Carried, SourceEdge};
-use fissure_scene::{CrackEnd, CrackFrame, Point, orientation};
+use fissure_plane::{Point, orientation};
+use fissure_scene::{CrackEnd, CrackFrame};
 
 /// The end of a crack on another boundary.
 #[derive(Debug, Clone, PartialEq)]

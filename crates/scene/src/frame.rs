@@ -1,6 +1,6 @@
 //! What the solver says of one moment: the crate `sim` makes frames, the crate `post` reads them.
 
-use crate::geometry::{Matrix, Point, Vector};
+use fissure_plane::{Matrix, Point, Vector};
 use serde::{Deserialize, Serialize};
 
 /// The state of a simulation at one moment.

@@ -9,13 +9,9 @@
 pub mod document;
 mod fault;
 mod frame;
-mod geometry;
 mod infinite;
-mod ligament;
 mod load;
 mod materials;
-mod narrow;
-mod outline;
 mod presets;
 mod scene;
 mod settings;
@@ -24,14 +20,14 @@ mod take;
 mod toughness;
 mod validate;
 
+pub use fissure_plane::{Matrix, Point, Region, Vector};
+
 pub use fault::{Key, KeyPath, SceneFault, Warning};
 pub use frame::*;
-pub use geometry::*;
 pub use load::{
     Draft, DraftOptions, LoadError, LoadErrorKind, Loaded, Place, draft, load, load_with_warnings, schema, template,
 };
 pub use materials::{material_preset, material_presets};
-pub use narrow::*;
 pub use presets::{solver_preset, updated_kernel};
 pub use scene::*;
 pub use settings::*;

@@ -1,9 +1,9 @@
 //! A scene, complete and validated: everything in SI units, every reference resolved.
 
 use crate::frame::{End, Pose};
-use crate::geometry::{Point, Region, Vector};
 use crate::settings::{FrameSettings, GrowthSettings, OutputSettings, PlaneState, SolverSettings};
 use crate::toughness::ToughnessPatch;
+use fissure_plane::{Point, Region, Vector};
 use serde::{Deserialize, Serialize};
 
 /// What the solver is asked to compute. Made by [`crate::load`]; every number is finite and in its range.

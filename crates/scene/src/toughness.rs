@@ -1,7 +1,7 @@
 //! Toughness that varies in space: factors on the fracture toughness of the material, over regions or painted.
 
-use crate::geometry::{Point, Region, Vector};
 use crate::scene::Scene;
+use fissure_plane::{Point, Region, Vector};
 use serde::{Deserialize, Serialize};
 
 /// Factors on the fracture toughness K_Ic of a body, or of all bodies. Places are those of the body at rest.

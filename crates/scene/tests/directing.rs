@@ -4,7 +4,8 @@
 mod common;
 
 use common::{Folder, PLATE, paint, scene_with};
-use fissure_scene::{Branching, LoadErrorKind, Point, Scene, ToughnessKind, load, material_presets, segment_distance};
+use fissure_plane::{Point, segment_distance};
+use fissure_scene::{Branching, LoadErrorKind, Scene, ToughnessKind, load, material_presets};
 use png::{BitDepth, ColorType};
 
 fn plate(rest: &str) -> Scene {

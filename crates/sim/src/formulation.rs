@@ -7,7 +7,8 @@ use crate::particles::Particles;
 use crate::solver::{Handover, Solver};
 use crate::total::Total;
 use crate::updated::Updated;
-use fissure_scene::{Formulation, Kernel, LoadKind, Scene, bounds, updated_kernel};
+use fissure_plane::bounds;
+use fissure_scene::{Formulation, Kernel, LoadKind, Scene, updated_kernel};
 use std::sync::Arc;
 
 /// A formulation and the reason for it.

@@ -4,7 +4,8 @@ use crate::SimulationError;
 use crate::grid::kernel;
 use crate::total::Total;
 use crate::updated::Updated;
-use fissure_scene::{Formulation, Matrix, OnDistortion, Point, Scene, Vector, polyline_length};
+use fissure_plane::{Matrix, Point, Vector, polyline_length};
+use fissure_scene::{Formulation, OnDistortion, Scene};
 
 /// What a scene is made of, as numbers, before any of it is laid.
 #[derive(Debug, Clone, Copy, PartialEq)]

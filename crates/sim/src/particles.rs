@@ -4,7 +4,8 @@ use crate::SimulationError;
 use crate::boundary::selector::Selector;
 use crate::grid::scan::Places;
 use crate::grid::spans::{Span, SpanRows};
-use fissure_scene::{KeyPath, Point, Region, Scene, SceneFault, Selection, Vector, bounds};
+use fissure_plane::{Point, Vector, bounds};
+use fissure_scene::{KeyPath, Scene, SceneFault, Selection};
 use std::ops::Range;
 
 /// The particles of all bodies at rest, in the order body, row, column. Shape: one entry per particle in every list.
@@ -159,7 +160,7 @@ impl Particles {
                 (why, format!("move the points, or make `radius` at least {} m", round_up(1.5 * off)))
             }
             Selection::Region(region) => {
-                let off = distance(&|p| distance_to_rings(region, p));
+                let off = distance(&|p| region.distance_to_rings(p));
                 (
                     format!("the nearest is {off:.3e} m away from its region"),
                     "move the region onto a body, or make it larger".into(),
@@ -217,20 +218,4 @@ fn round_up(value: f64) -> f64 {
     let unit = 10_f64.powf(value.log10().floor() - 1.0);
     let rounded = (value / unit).ceil() * unit;
     format!("{rounded:.1e}").parse().unwrap_or(rounded)
-}
-
-/// Distance from `point` to the nearest ring of `region` [m].
-pub(crate) fn distance_to_rings(region: &Region, point: Point) -> f64 {
-    let mut nearest = f64::INFINITY;
-    for ring in region.rings() {
-        for i in 0..ring.len() {
-            nearest = nearest.min(distance_to_segment(point, ring[i], ring[(i + 1) % ring.len()]));
-        }
-    }
-    nearest
-}
-
-/// Distance from `point` to the segment `a`–`b` [m].
-pub(crate) fn distance_to_segment(point: Point, a: Point, b: Point) -> f64 {
-    (point - fissure_scene::nearest_on_segment(a, b, point)).norm()
 }

@@ -1,7 +1,7 @@
 //! The parts of outlines that a line is drawn on.
 
-use crate::geometry::{Point, Region};
 use crate::scene::OutlineStretch;
+use fissure_plane::{Point, Region};
 
 /// An edge that turns away from a drawn line by more than this crosses it and does not run along it: the cosine of 45°.
 const LEAST_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
@@ -118,7 +118,7 @@ mod tests {
             // Off to one side.
             line.iter_mut().for_each(|p| *p = (p.0 + off, p.1 + off));
             if backwards { line.reverse(); }
-            let exterior = crate::outline::oriented(turned(&outline, angle, (x, 1.0), mirrored), true);
+            let exterior = fissure_plane::oriented(turned(&outline, angle, (x, 1.0), mirrored), true);
             let line = turned(&line, angle, (x, 1.0), mirrored);
             let region = Region { exterior, holes: Vec::new() };
             let found = stretches_along(&line, &region, 3, 0.01);

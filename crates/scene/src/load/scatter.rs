@@ -1,6 +1,6 @@
 //! Straight flaws scattered at random, apart from each other and from everything else.
 
-use crate::geometry::{Point, Region, Vector, bounds, segment_distance};
+use fissure_plane::{Point, Region, Vector, bounds, segment_distance};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use sha2::{Digest, Sha256};

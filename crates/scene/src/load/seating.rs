@@ -2,8 +2,7 @@
 
 use super::split::{Piece, pieces_inside};
 use crate::fault::{short, show};
-use crate::geometry::{Point, Region, Vector, nearest_on_segment};
-use crate::outline::{RingPlace, insert_corner, nearest_on_rings};
+use fissure_plane::{Point, Region, RingPlace, Vector, nearest_on_segment};
 
 /// What is wrong, and the remedy.
 pub(crate) type Complaint = (String, String);
@@ -30,7 +29,7 @@ pub(crate) struct Seated {
 pub(crate) fn seat_crack(line: &[Point], region: &mut Region, tolerance: f64) -> Vec<Seated> {
     let mut line = line.to_vec();
     for _ in 0..2 {
-        let near = line.first().and_then(|&start| nearest_on_rings(region, start));
+        let near = line.first().and_then(|&start| region.nearest(start));
         if let Some(place) = near.filter(|place| place.distance <= tolerance) {
             line[0] = at_corner(region, place, tolerance).point;
         }
@@ -39,9 +38,9 @@ pub(crate) fn seat_crack(line: &[Point], region: &mut Region, tolerance: f64) ->
     let mut pieces: Vec<Seated> = Vec::new();
     for Piece { mut points, mouths, from } in pieces_inside(&line, region, WELD * tolerance, tolerance) {
         for (is_mouth, at) in mouths.into_iter().zip([0, points.len() - 1]) {
-            if is_mouth && let Some(place) = nearest_on_rings(region, points[at]) {
+            if is_mouth && let Some(place) = region.nearest(points[at]) {
                 let place = at_corner(region, RingPlace { point: points[at], ..place }, tolerance);
-                insert_corner(region, &place);
+                region.insert_corner(&place);
                 points[at] = place.point;
             }
         }
@@ -260,7 +259,7 @@ mod tests {
             let area = region.area();
             let line = split::placed(&line, angle, mirrored);
             prop_assume!(line.windows(2).all(|w| (w[1] - w[0]).norm() > 0.1));
-            prop_assume!(crate::outline::find_crossing(&[&line], false).is_none());
+            prop_assume!(fissure_plane::find_crossing(&[&line], false).is_none());
             // Nor does anybody draw a needle as wide as what is moved onto a ring; the validation says where its sides meet.
             let is_needle = |w: &[Point]| {
                 let (there, back) = (w[1] - w[0], w[2] - w[1]);
@@ -276,7 +275,7 @@ mod tests {
                 prop_assert!(crate::validate::leaves(&region, &piece.points).is_none(), "{:?} {:?}", piece, line);
                 for other in &pieces[..k] {
                     let meets = other.points.windows(2).any(|v| piece.points.windows(2).any(|w| {
-                        crate::geometry::segments_touch(v[0], v[1], w[0], w[1])
+                        fissure_plane::segments_touch(v[0], v[1], w[0], w[1])
                     }));
                     prop_assert!(!meets, "{:?} {:?}", other, piece);
                 }

@@ -1,7 +1,6 @@
 //! The pieces of a drawn line that lie in the material of a body.
 
-use crate::geometry::{Point, Region, nearest_on_segment};
-use crate::outline::nearest_on_rings;
+use fissure_plane::{Point, Region, nearest_on_segment};
 
 /// A piece of a line in the material, from ring to ring or to an end of the line.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,7 +45,7 @@ pub(crate) fn pieces_inside(line: &[Point], region: &Region, weld: f64, shortest
     for (i, pair) in borders.windows(2).enumerate() {
         let (start, end) = (pair[0][1], pair[1][0]);
         let middle = place_at(line, &lengths, 0.5 * (start.at + end.at));
-        let on_ring = nearest_on_rings(region, middle).is_some_and(|place| place.distance <= weld);
+        let on_ring = region.nearest(middle).is_some_and(|place| place.distance <= weld);
         if end.at - start.at <= shortest || on_ring || !region.contains(middle) {
             continue;
         }
@@ -137,8 +136,7 @@ fn borders(meetings: Vec<Meeting>, gap: f64) -> Vec<[Meeting; 2]> {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::geometry::polyline_length;
-    use crate::outline::oriented;
+    use fissure_plane::{oriented, polyline_length};
     use proptest::prelude::*;
     use std::f64::consts::PI;
 
@@ -205,7 +203,7 @@ pub(crate) mod tests {
                 step = step.max(sample.norm());
                 for k in 0..4000 {
                     let p = w[0] + sample * (f64::from(k) + 0.5);
-                    let off = nearest_on_rings(&region, p).map_or(0.0, |place| place.distance);
+                    let off = region.nearest(p).map_or(0.0, |place| place.distance);
                     let inside = region.contains(p) && off > 1e-9;
                     if inside && off <= WELD {
                         faint += sample.norm();
@@ -230,7 +228,7 @@ pub(crate) mod tests {
             prop_assert!((found - truth).abs() <= allowed, "{} instead of {}", found, truth);
             for piece in &pieces {
                 for (end, point) in [piece.points[0], piece.points[piece.points.len() - 1]].into_iter().enumerate() {
-                    let off = nearest_on_rings(&region, point).map_or(f64::INFINITY, |place| place.distance);
+                    let off = region.nearest(point).map_or(f64::INFINITY, |place| place.distance);
                     prop_assert_eq!(piece.mouths[end], off <= 2.0 * WELD, "{}", point);
                 }
                 for w in piece.points.windows(2) {

@@ -21,7 +21,7 @@
 //! | `colliders.position`, `.angle` | [c, 2], \[c\] f64 | m, rad |
 
 use crate::frame::*;
-use crate::geometry::{Matrix, Point, Vector};
+use fissure_plane::{Matrix, Point, Vector};
 use safetensors::tensor::{Dtype, SafeTensors, View, serialize};
 use std::borrow::Cow;
 use std::collections::HashMap;

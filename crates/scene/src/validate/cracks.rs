@@ -4,9 +4,8 @@ use super::curve::{Clock, validate_schedule};
 use super::region::is_on;
 use super::{COORDINATE, Check, POINTS, UNIT, unique_name};
 use crate::fault::{KeyPath, SceneFault, show};
-use crate::geometry::{Point, Region, nearest_on_segment, orientation, polyline_length, segments_touch};
-use crate::outline::{find_crossing, nearest_on_rings};
 use crate::scene::{Body, Crack, Scene};
+use fissure_plane::{Point, Region, find_crossing, nearest_on_segment, orientation, polyline_length, segments_touch};
 
 impl Scene {
     pub(super) fn validate_cracks(&self) -> Check {
@@ -52,8 +51,7 @@ impl Scene {
         let name = &crack.name;
         let line = path.then("line");
         validate_polyline(&line, &format!("crack `{name}`"), &crack.points)?;
-        let on_ring =
-            |p: Point| nearest_on_rings(&body.region, p).is_some_and(|place| is_on(&body.region, place.distance));
+        let on_ring = |p: Point| body.region.nearest(p).is_some_and(|place| is_on(&body.region, place.distance));
         let [first, .., last] = crack.points.as_slice() else { return Ok(()) };
         for (end, point, live, guide) in
             [("start", *first, crack.start_live, &crack.start_guide), ("end", *last, crack.end_live, &crack.end_guide)]

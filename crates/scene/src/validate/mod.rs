@@ -23,8 +23,8 @@ pub(crate) use toughness::{outside, validate_corners};
 
 use crate::document::PolygonKeys;
 use crate::fault::{KeyPath, SceneFault, short};
-use crate::geometry::Vector;
 use crate::scene::Scene;
+use fissure_plane::Vector;
 use motion::validate_collider;
 use name::{validate_file_name, validate_word};
 

@@ -7,8 +7,8 @@ use super::{
 };
 use crate::fault::{KeyPath, SceneFault};
 use crate::frame::Pose;
-use crate::geometry::Region;
 use crate::scene::*;
+use fissure_plane::Region;
 
 impl Scene {
     pub(super) fn validate_load(&self, path: &KeyPath, load: &Load) -> Check {

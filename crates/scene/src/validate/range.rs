@@ -5,7 +5,7 @@
 
 use super::Check;
 use crate::fault::{KeyPath, SceneFault};
-use crate::geometry::Point;
+use fissure_plane::Point;
 
 /// A range of numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]

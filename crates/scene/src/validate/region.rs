@@ -2,8 +2,7 @@
 
 use super::{COORDINATE, CORNERS, Check};
 use crate::fault::{KeyPath, SceneFault, show};
-use crate::geometry::{Point, Region, bounds, orientation, signed_area};
-use crate::outline::find_crossing;
+use fissure_plane::{Point, Region, bounds, find_crossing, orientation, signed_area};
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::float::single::SingleFloatOverlay;

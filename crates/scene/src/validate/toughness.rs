@@ -3,9 +3,9 @@
 use super::region::overlap;
 use super::{COORDINATE, Check, TOUGHNESS_FACTOR, validate_region};
 use crate::fault::{KeyPath, SceneFault};
-use crate::geometry::Point;
 use crate::scene::{Body, Inclusion, Scene};
 use crate::toughness::{ToughnessImage, ToughnessKind, ToughnessPatch};
+use fissure_plane::Point;
 
 impl Scene {
     pub(super) fn validate_inclusion(&self, path: &KeyPath, inclusion: &Inclusion, body: &Body) -> Check {

@@ -1,6 +1,7 @@
 //! Rigid obstacles that move on keyframes, and what they do to the velocity of material inside them.
 
-use fissure_scene::{Collider, ColliderShape, Contact, Point, Pose, Region, Vector, bounds};
+use fissure_plane::{Point, Region, Vector, bounds};
+use fissure_scene::{Collider, ColliderShape, Contact, Pose};
 use parry2d_f64::math::Vector as ParryVector;
 use parry2d_f64::shape::SharedShape;
 

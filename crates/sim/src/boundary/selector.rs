@@ -1,7 +1,7 @@
 //! Which places of the bodies a selection means.
 
-use crate::particles::distance_to_rings;
-use fissure_scene::{BoxSide, OutlineStretch, Point, Region, Scene, Selection, Vector, bounds};
+use fissure_plane::{Point, Region, Vector, bounds};
+use fissure_scene::{BoxSide, OutlineStretch, Scene, Selection};
 
 /// A selection in a scene, ready to be asked for many places.
 #[derive(Debug, Clone)]
@@ -51,7 +51,7 @@ impl<'s> Selector<'s> {
         match self {
             Self::All => true,
             Self::Bodies(bodies) => bodies.contains(&body),
-            Self::Region { region, slack } => region.contains(place) || distance_to_rings(region, place) <= *slack,
+            Self::Region { region, slack } => region.contains(place) || region.distance_to_rings(place) <= *slack,
             Self::Near { points, radius } => points.iter().any(|q| (place - q).norm() <= *radius),
             Self::Side(side) => {
                 let depth = side.depth(place);
@@ -79,7 +79,7 @@ impl<'s> Selector<'s> {
     fn has_piece(&self, body: usize, [a, b]: [Point; 2], slack: f64) -> bool {
         let within = |p: Point| match self {
             Self::Side(side) => side.is_of(body) && side.depth(p).abs() <= slack,
-            Self::Region { region, .. } => region.contains(p) || distance_to_rings(region, p) <= slack,
+            Self::Region { region, .. } => region.contains(p) || region.distance_to_rings(p) <= slack,
             Self::Near { points, radius } => points.iter().any(|q| (p - q).norm() <= radius + slack),
             Self::All | Self::Bodies(_) | Self::Outline(_) => self.selects(p, body, 0.0, slack),
         };

@@ -12,7 +12,7 @@
 //!
 //! A node exactly on the crack is crossed to from either side: its own field stays empty there.
 
-use fissure_scene::{Point, orientation};
+use fissure_plane::{Point, orientation};
 use serde::{Deserialize, Serialize};
 
 /// A side of a crack, for one who walks from its start to its end.

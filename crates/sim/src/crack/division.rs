@@ -11,7 +11,8 @@
 //! tip has passed it, nothing is shared: the pair is split as if the crack went on straight ahead.
 
 use crate::crack::crossing::{NetCrossing, Side, crossing};
-use fissure_scene::{Point, TipDivision, Vector, orientation};
+use fissure_plane::{Point, Vector, orientation};
+use fissure_scene::TipDivision;
 use rustc_hash::FxHashMap;
 
 /// What a line crosses: sorted (crack, side of the particle); empty: nothing.

@@ -90,7 +90,7 @@ impl GuideWalk {
     pub(crate) fn due(&self, grown: f64, time: f64) -> Option<Due> {
         let schedule = &self.guide.schedule;
         let last = schedule.points.last()?;
-        let length = fissure_scene::polyline_length(&self.guide.points);
+        let length = fissure_plane::polyline_length(&self.guide.points);
         Some(Due { length: schedule.value(time) * length - grown, is_last: time >= last.0 })
     }
 }

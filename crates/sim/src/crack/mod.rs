@@ -8,7 +8,8 @@ pub(crate) mod guide;
 use crate::crack::division::{CrackLine, LineEnd};
 use crate::crack::guide::GuideWalk;
 use crate::saved::{self, Fits};
-use fissure_scene::{CrackEnd, End, Point, Scene, TipRecord, TipState, Vector, polyline_length};
+use fissure_plane::{Point, Vector, polyline_length};
+use fissure_scene::{CrackEnd, End, Scene, TipRecord, TipState};
 use serde::{Deserialize, Serialize};
 
 /// A crack. All positions are at rest; a solver knows where they are now.
@@ -178,7 +179,7 @@ impl Crack {
         let tolerance = 1e-6 * scene.cell_size;
         let is_other = |other: &&fissure_scene::Crack| other.body == crack.body && other.name != crack.name;
         let end_at = |p: Point| {
-            let on_ring = crate::particles::distance_to_rings(region, p) <= tolerance;
+            let on_ring = region.distance_to_rings(p) <= tolerance;
             if on_ring || !region.contains(p) {
                 return CrackEnd::Mouth;
             }

@@ -3,8 +3,8 @@
 use super::toughness;
 use crate::boundary::collider::Obstacle;
 use crate::material::elastic::Elastic;
-use crate::particles::distance_to_rings;
-use fissure_scene::{Crack, End, Point, Region, Scene, Vector, polyline_length};
+use fissure_plane::{Point, Region, Vector, polyline_length};
+use fissure_scene::{Crack, End, Scene};
 
 /// A live tip of the drawing.
 #[derive(Debug, Clone, Copy)]
@@ -162,7 +162,7 @@ fn first_contact(scene: &Scene, end: f64) -> f64 {
                 Region { exterior: body.region.exterior.iter().map(|p| p + moved).collect(), holes: Vec::new() };
             let at = placed.pose().position;
             let around = if center.contains(at) { 0.0 } else { f64::INFINITY };
-            let near = distance_to_rings(&center, at);
+            let near = center.distance_to_rings(at);
             // A disc smaller than the edges of the outline is near their middles.
             let disc = match collider.shape {
                 fissure_scene::ColliderShape::Disc { radius } => near - radius,

@@ -29,7 +29,7 @@ pub(super) struct Samples {
 impl Samples {
     /// Lays out a scene; none where even a fine lattice misses a body.
     pub(super) fn of(scene: &Scene) -> Option<Self> {
-        let (low, high) = fissure_scene::bounds(
+        let (low, high) = fissure_plane::bounds(
             &scene.bodies.iter().flat_map(|b| b.region.exterior.iter().copied()).collect::<Vec<_>>(),
         );
         let size = (high - low).amax();
@@ -85,7 +85,7 @@ fn on_outlines(
 /// The middle of a selection that is smaller than the lattice.
 fn center(selection: &Selection) -> Option<Point> {
     let middle = |points: &[Point]| {
-        let (low, high) = fissure_scene::bounds(points);
+        let (low, high) = fissure_plane::bounds(points);
         (!points.is_empty()).then(|| nalgebra::center(&low, &high))
     };
     match selection {

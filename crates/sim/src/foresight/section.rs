@@ -2,7 +2,6 @@
 
 use super::course::DrawnTip;
 use super::samples::{PlacedForce, Samples};
-use crate::particles::distance_to_rings;
 use fissure_scene::{Point, Scene, Vector};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::PI;
@@ -29,9 +28,9 @@ impl Section {
         let (place, other, ahead) = (tip.place(), tip.other_end(), tip.ahead());
         let body = &scene.bodies[tip.crack.body];
         let (low, high) = body.region.bounds();
-        let on_outline = distance_to_rings(&body.region, other) <= 1e-6 * (high - low).norm();
+        let on_outline = body.region.distance_to_rings(other) <= 1e-6 * (high - low).norm();
         let trunk = scene.cracks.iter().find(|c| !std::ptr::eq(*c, tip.crack) && c.points.contains(&other));
-        let longer = trunk.map_or(0.0, |trunk| fissure_scene::polyline_length(&trunk.points));
+        let longer = trunk.map_or(0.0, |trunk| fissure_plane::polyline_length(&trunk.points));
         let ligament = tip.free_way(scene, place, ahead).min((high - low).norm());
         let behind = tip.free_way(scene, other, -ahead).min((high - low).norm());
         let length = (place - other).norm() + longer;

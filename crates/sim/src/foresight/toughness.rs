@@ -64,7 +64,7 @@ fn percent(part: f64) -> String {
 pub(super) fn greatest_loads(scene: &Scene, elastic: &[Elastic]) -> Vec<f64> {
     let mut found = vec![-1.0; scene.cracks.len()];
     let mut tips: Vec<DrawnTip<'_>> = DrawnTip::all(scene).collect();
-    let length = |tip: &DrawnTip<'_>| fissure_scene::polyline_length(&tip.crack.points);
+    let length = |tip: &DrawnTip<'_>| fissure_plane::polyline_length(&tip.crack.points);
     tips.sort_by(|a, b| length(b).total_cmp(&length(a)));
     let Some(samples) = Samples::of(scene) else { return vec![f64::NAN; found.len()] };
     let end = scene.frames.time(scene.frames.last);

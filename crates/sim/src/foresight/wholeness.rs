@@ -4,7 +4,8 @@ use super::groups::groups;
 use super::samples::two_digits;
 use super::width::width;
 use crate::particles::Particles;
-use fissure_scene::{KeyPath, Point, Region, Scene, SceneFault, nearest_on_segment};
+use fissure_plane::{Point, Region, nearest_on_segment};
+use fissure_scene::{KeyPath, Scene, SceneFault};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ops::Range;
 

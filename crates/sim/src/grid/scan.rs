@@ -1,7 +1,7 @@
 //! Which places of a lattice lie inside a region, found row by row along its rings: work goes with the length of the rings and with what is found, not with
 //! the box around them.
 
-use fissure_scene::{Point, Region, Vector, orientation};
+use fissure_plane::{Point, Region, Vector, orientation};
 use std::ops::Range;
 
 /// Places at `anchor` + s (i + ½, j + ½).

@@ -2,7 +2,8 @@
 
 use super::{Advance, LAST_LIGAMENT};
 use crate::crack::{Crack, ENDS, slot};
-use fissure_scene::{CrackEnd, End, Point, Region, TipState, Vector, nearest_on_segment, orientation, segments_touch};
+use fissure_plane::{Point, Region, Vector, nearest_on_segment, orientation, segments_touch};
+use fissure_scene::{CrackEnd, End, TipState};
 
 /// Its own crack, the one it branched from and its branches count as beside a tip only this many cells from where they part.
 const PARTED: f64 = 8.0;

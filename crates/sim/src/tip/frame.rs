@@ -2,7 +2,8 @@
 
 use crate::crack::crossing::Side;
 use crate::crack::{Crack, DIRECTION_LENGTH, chord_start};
-use fissure_scene::{End, Matrix, Point, Vector, orientation};
+use fissure_plane::{Matrix, Point, Vector, orientation};
+use fissure_scene::End;
 
 /// Segments behind a tip that are looked at for the side of a place; more than any integral reaches.
 const SEGMENTS_BEHIND: usize = 40;
@@ -38,7 +39,7 @@ pub(crate) fn side_of(points: &[Point], end: End, ahead: Vector, place: Point) -
                 End::End => (points[n - 2 - k], points[n - 1 - k]),
                 End::Start => (points[k + 1], points[k]),
             };
-            let distance = crate::particles::distance_to_segment(place, a, b);
+            let distance = fissure_plane::distance_to_segment(place, a, b);
             if distance < nearest {
                 nearest = distance;
                 sign = orientation(a, b, place);

@@ -110,15 +110,15 @@ impl Gauge<'_> {
         let line = &cracks[crack];
         let tip = line.tip_position(end);
         let body = &self.scene.bodies[line.body as usize];
-        let mut free = crate::particles::distance_to_rings(&body.region, tip);
+        let mut free = body.region.distance_to_rings(tip);
         for inclusion in &body.inclusions {
             // The integrals hold for one material; across an interface they would count its image forces.
-            free = free.min(crate::particles::distance_to_rings(&inclusion.region, tip));
+            free = free.min(inclusion.region.distance_to_rings(tip));
         }
         for (index, other) in cracks.iter().enumerate() {
             if index != crack && other.body == line.body {
                 for w in other.points.windows(2) {
-                    free = free.min(crate::particles::distance_to_segment(tip, w[0], w[1]));
+                    free = free.min(fissure_plane::distance_to_segment(tip, w[0], w[1]));
                 }
             }
         }

@@ -174,7 +174,7 @@ impl Total {
 /// Distance to the nearest of `segments` [m], which rise, and which it is; one counts as nearer than those before it when it is so `clearly` [m].
 fn nearest_of(segments: impl Iterator<Item = usize>, line: &Crack, place: Point, clearly: f64) -> (f64, usize) {
     segments.fold((f64::INFINITY, 0), |(nearest, segment), s| {
-        let distance = crate::particles::distance_to_segment(place, line.points[s], line.points[s + 1]);
+        let distance = fissure_plane::distance_to_segment(place, line.points[s], line.points[s + 1]);
         if distance < nearest - clearly { (distance, s) } else { (nearest, segment) }
     })
 }

@@ -459,7 +459,7 @@ impl Total {
         for (ring, probes) in self.state.outlines.iter().enumerate() {
             for k in 0..probes.len() {
                 let (a, b) = (probes[k].rest, probes[(k + 1) % probes.len()].rest);
-                let distance = crate::particles::distance_to_segment(place, a, b);
+                let distance = fissure_plane::distance_to_segment(place, a, b);
                 if best.is_none_or(|x| distance < x.0) {
                     best = Some((distance, ring, k));
                 }

@@ -104,7 +104,7 @@ const NONE: u32 = u32::MAX;
 impl Total {
     /// Lays the lattice and cuts it by the initial cracks.
     pub(crate) fn new(scene: &Scene, particles: Arc<Particles>, cracks: &[Crack]) -> Result<Self, SimulationError> {
-        let (mut low, mut high) = fissure_scene::bounds(&[]);
+        let (mut low, mut high) = fissure_plane::bounds(&[]);
         for body in &scene.bodies {
             let (l, h) = body.region.bounds();
             (low, high) = (low.inf(&l), high.sup(&h));
@@ -205,7 +205,7 @@ impl Total {
         probes.clone().try_for_each(|probe| probe.check(fields))?;
         state.ties.check(fields, nodes, cracks.len())?;
         tie::check_tips(state.cut_at.keys(), cracks.len())?;
-        let ((low, high), margin) = (fissure_scene::bounds(&self.particles.rest), Vector::repeat(self.grid.cell_size));
+        let ((low, high), margin) = (fissure_plane::bounds(&self.particles.rest), Vector::repeat(self.grid.cell_size));
         let is_near = |place: &Point| *place >= low - margin && *place <= high + margin;
         saved::ensure(state.cut_at.values().all(is_near), "the place of a tip")?;
         saved::finite("its last step", [&state.external_work, &state.last_step])

@@ -11,7 +11,8 @@ use super::tie::key;
 use crate::crack::crossing::Side;
 use crate::crack::{Crack, slot};
 use crate::grid::kernel;
-use fissure_scene::{CrackEnd, End, Matrix, Point, Vector, bounds};
+use fissure_plane::{Matrix, Point, Vector, bounds};
+use fissure_scene::{CrackEnd, End};
 
 /// Stencils are laid anew within so many cells of what has changed of a crack: the window of the division, the kernel, and some room.
 const REACH: f64 = 6.0;

@@ -301,7 +301,7 @@ impl Updated {
         for (ring, tracers) in self.state.outlines.iter().enumerate() {
             for k in 0..tracers.len() {
                 let (a, b) = (tracers[k].rest, tracers[(k + 1) % tracers.len()].rest);
-                let distance = crate::particles::distance_to_segment(place, a, b);
+                let distance = fissure_plane::distance_to_segment(place, a, b);
                 if best.is_none_or(|x| distance < x.0) {
                     best = Some((distance, ring, k));
                 }

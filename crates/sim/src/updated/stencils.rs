@@ -226,7 +226,7 @@ impl Updated {
     /// # Errors
     /// When material has gone so far away that the grid would become too large.
     pub(super) fn lay_grid(&mut self, cracks: &[Crack], time: f64) -> Result<(), SimulationError> {
-        let (mut low, mut high) = fissure_scene::bounds(&[]);
+        let (mut low, mut high) = fissure_plane::bounds(&[]);
         for p in &self.state.points {
             (low, high) = (low.inf(&p.position), high.sup(&p.position));
         }

@@ -53,7 +53,7 @@ fn a_plate_is_stretched_by_the_effective_modulus() {
         simulation.relax(1e-10, 4000).unwrap();
         let frame = simulation.frame();
         let ring = &frame.outlines[0];
-        let (low, high) = fissure_scene::bounds(&ring.position);
+        let (low, high) = fissure_plane::bounds(&ring.position);
         let strain = (high.y - low.y) / 20.0 - 1.0;
         assert!((strain * modulus / STRESS - 1.0).abs() < 1e-5, "{plane:?}: {strain}");
     }

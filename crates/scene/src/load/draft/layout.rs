@@ -2,11 +2,11 @@
 
 use super::pull::Pull;
 use super::sketch::Sketch;
-use crate::geometry::{Point, Region, bounds, nearest_on_segment, polyline_length};
 use crate::load::drawing::LoadedDrawing;
 use crate::load::seating::Complaint;
 use crate::load::split::{Piece, pieces_inside};
 use crate::scene::Material;
+use fissure_plane::{Point, Region, bounds, nearest_on_segment, polyline_length};
 
 /// Particles along the larger side of the bodies, at least.
 const PARTICLES: f64 = 128.0;

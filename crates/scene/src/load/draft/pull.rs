@@ -1,8 +1,8 @@
 //! A pull that makes a drawn crack run, and the time it takes.
 
-use crate::geometry::{Point, Region, Vector, bounds, polyline_length};
 use crate::load::split::{Piece, pieces_inside};
 use crate::scene::Material;
+use fissure_plane::{Point, Region, Vector, bounds, polyline_length};
 
 /// The pull at its full is this many times what the crack needs to start, by the formula for a strip: enough for bodies that are no
 /// strips, and for cracks that run on without a stop.

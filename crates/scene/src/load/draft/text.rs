@@ -4,7 +4,7 @@ use super::DraftOptions;
 use super::layout::Layout;
 use super::pull::{Pull, SURPLUS};
 use super::sketch::{Sketch, listed};
-use crate::geometry::Point;
+use fissure_plane::Point;
 use std::fmt::Write;
 
 /// Frames of the sequence.

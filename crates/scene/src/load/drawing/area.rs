@@ -3,7 +3,7 @@
 use super::bridge::bridges;
 use super::flatten::Polyline;
 use super::pinch::part_touching_rings;
-use crate::geometry::{Point, Region, signed_area};
+use fissure_plane::{Point, Region, signed_area};
 use i_overlay::core::fill_rule::FillRule as OverlayFill;
 use i_overlay::core::overlay::{IntOverlayOptions, Overlay, ShapeType};
 use i_overlay::core::overlay_rule::OverlayRule;

@@ -2,8 +2,8 @@
 
 use super::area::GridPoint;
 use super::limits::{MOST_CROSSINGS, MOST_PAIRS, MOST_POINTS};
-use crate::geometry::Point;
 use crate::load::seating::Complaint;
+use fissure_plane::Point;
 use kurbo::{BezPath, PathEl};
 
 /// A drawing is single precision: to flatten finer than this part of a curve's size has no meaning.

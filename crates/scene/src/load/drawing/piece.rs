@@ -4,8 +4,8 @@ use super::ROUNDING;
 use super::area::{Area, FillRule, Grid, GridPoint};
 use super::flatten::{Budget, Polyline, flatten};
 use super::stroke::stroke_outline;
-use crate::geometry::Point;
 use crate::load::seating::Complaint;
+use fissure_plane::Point;
 use kurbo::{Affine, BezPath, PathEl, Rect};
 use std::collections::HashMap;
 

@@ -4,7 +4,7 @@
 //! could be walked along. Every pass is cut short at one small distance from the place, all by the same: the new edges are
 //! chords of a circle around it, and since the passes do not cross, neither do their chords.
 
-use crate::geometry::{Point, nearest_on_segment, orientation};
+use fissure_plane::{Point, nearest_on_segment, orientation};
 use std::collections::HashMap;
 
 /// The part of the way to the nearest other corner or edge that a notch may take.

@@ -4,10 +4,10 @@ use super::shapes::center_of_area;
 use super::{Resolved, Resolver};
 use crate::document::MaterialKeys;
 use crate::fault::{KeyPath, SceneFault, nearest};
-use crate::geometry::{Point, Vector};
 use crate::materials::{SNOW_PLASTICITY, material_preset, material_presets};
 use crate::scene::*;
 use crate::validate::{outside, overlap};
+use fissure_plane::{Point, Vector};
 
 impl<'d> Resolver<'d> {
     pub(super) fn materials_and_bodies(

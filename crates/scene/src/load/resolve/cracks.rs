@@ -5,10 +5,10 @@ use super::settings::in_seconds;
 use super::{Resolved, Resolver};
 use crate::document::{CrackKeys, Tips};
 use crate::fault::{KeyPath, SceneFault, nearest, show};
-use crate::geometry::Point;
 use crate::load::seating::{Seated, fit_guide, seat_crack, seat_on_cracks};
 use crate::scene::*;
 use crate::validate::{Clock, no_tip, validate_schedule, validate_strength};
+use fissure_plane::Point;
 
 /// Crack ends this near to the outline or to another crack, in particle spacings, lie on it: twice what flattening may move it by.
 const MOUTH_TOLERANCE: f64 = 2.0 * super::FLATTENING;

@@ -2,7 +2,7 @@
 
 use super::Resolver;
 use crate::fault::{KeyPath, Warning, short, show};
-use crate::geometry::Region;
+use fissure_plane::Region;
 
 /// A part with the area of fewer particles may hold none, whatever its shape.
 const FEWEST_PARTICLES: f64 = 4.0;

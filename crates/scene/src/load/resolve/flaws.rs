@@ -3,10 +3,10 @@
 use super::{Resolved, Resolver};
 use crate::document::FlawsKeys;
 use crate::fault::{KeyPath, SceneFault, short};
-use crate::geometry::{Point, Region};
 use crate::load::scatter::{Flaws, scatter};
 use crate::scene::{Crack, Scene};
 use crate::validate::{DEGREES, DEGREES_APART, FLAW_DENSITY, ITEMS, LENGTH, SPREAD, outside, overlap};
+use fissure_plane::{Point, Region};
 
 /// Least distance of flaws from everything else, in cells, unless the scene says otherwise: what a tip needs around it to be measured.
 const MARGIN: f64 = 2.0;

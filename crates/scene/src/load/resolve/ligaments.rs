@@ -2,9 +2,8 @@
 
 use super::Resolver;
 use crate::fault::{KeyPath, Warning, rounded_down, show};
-use crate::geometry::Point;
-use crate::ligament::Outlook;
 use crate::scene::{Crack, Guide, Scene};
+use fissure_plane::{Outlook, Point};
 
 /// Cells between a tip and what is ahead of it, at least: its integrals take four of them, and the ligament bends.
 const FEWEST_CELLS: f64 = 8.0;

@@ -18,9 +18,9 @@ use super::drawing::LoadedDrawing;
 use super::picture::Picture;
 use crate::document::Document;
 use crate::fault::{KeyPath, SceneFault, Warning};
-use crate::geometry::Vector;
 use crate::scene::Scene;
 use crate::validate::{ITEMS, LENGTH};
+use fissure_plane::Vector;
 use std::cell::RefCell;
 
 pub(crate) use origin::Origin;

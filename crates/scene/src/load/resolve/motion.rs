@@ -5,9 +5,9 @@ use super::{Resolved, Resolver};
 use crate::document::*;
 use crate::fault::{KeyPath, SceneFault};
 use crate::frame::Pose;
-use crate::geometry::{Point, Region, Vector};
 use crate::scene::*;
 use crate::validate::{ANGULAR_VELOCITY, COORDINATE, VELOCITY, unit, validate_region};
+use fissure_plane::{Point, Region, Vector};
 
 impl<'d> Resolver<'d> {
     pub(super) fn colliders(&self, tolerance: f64) -> Resolved<Vec<Collider>> {

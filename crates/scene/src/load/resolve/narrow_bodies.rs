@@ -2,8 +2,8 @@
 
 use super::Resolver;
 use crate::fault::{KeyPath, Warning, short, show};
-use crate::narrow::{NarrowKind, narrow_places};
 use crate::scene::Scene;
+use fissure_plane::{NarrowKind, narrow_places};
 
 /// What is narrower than this, in particle spacings, is not seen as it is: it holds one row of particles or none, and its two sides
 /// share the nodes of the grid.

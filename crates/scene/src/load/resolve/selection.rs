@@ -4,9 +4,9 @@ use super::shapes::points;
 use super::{Resolved, Resolver};
 use crate::document::{Select, Shape};
 use crate::fault::{KeyPath, SceneFault, short, show};
-use crate::geometry::{Point, polyline_length};
 use crate::load::along::stretches_along;
 use crate::scene::{Scene, Selection};
+use fissure_plane::{Point, polyline_length};
 
 /// A drawn line this near to an edge, in particle spacings, selects it.
 const EDGE_TOLERANCE: f64 = 1.0;

@@ -3,11 +3,12 @@
 use super::{Resolved, Resolver};
 use crate::document::{CircleKeys, Line, Shape};
 use crate::fault::{KeyPath, SceneFault, Warning, show};
-use crate::geometry::{Point, Region, Vector, bounds, polyline_length, signed_area};
 use crate::load::drawing::LoadedDrawing;
 use crate::load::seating::Complaint;
-use crate::outline::{circle_ring, clean_ring, find_crossing, oriented};
 use crate::validate::{COORDINATE, LENGTH, POINTS, enough_corners, validate_region};
+use fissure_plane::{
+    Point, Region, Vector, bounds, circle_ring, clean_ring, find_crossing, oriented, polyline_length, signed_area,
+};
 
 impl<'d> Resolver<'d> {
     pub(super) fn bodies_box(&self) -> Resolved<(Point, Point)> {

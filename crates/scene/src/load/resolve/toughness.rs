@@ -3,11 +3,11 @@
 use super::{Resolved, Resolver};
 use crate::document::ToughnessKeys;
 use crate::fault::{KeyPath, SceneFault};
-use crate::geometry::{Point, Vector, bounds};
 use crate::load::picture::Picture;
 use crate::scene::Scene;
 use crate::toughness::{ToughnessImage, ToughnessKind, ToughnessPatch};
 use crate::validate::{TOUGHNESS_FACTOR, outside, overlap, validate_corners};
+use fissure_plane::{Point, Vector, bounds};
 
 /// Factors that stand for black and white unless the scene says otherwise: a crack needs a 25th of the energy in black.
 const BLACK: f64 = 0.2;

@@ -1,13 +1,13 @@
 //! The material that is left ahead of a tip.
 
-use crate::geometry::{Point, Vector, nearest_on_segment};
+use crate::{Point, Vector, nearest_on_segment};
 use nalgebra::Rotation2;
 use std::f64::consts::FRAC_PI_4;
 
 /// A tip with what it sees: the wedge of 45° to both sides of its direction. Wider, it would see the
 /// sides of every strip that it runs along the middle of.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Outlook {
+pub struct Outlook {
     tip: Point,
     /// Unit normals of the two sides of the wedge, into it.
     inward: [Vector; 2],
@@ -15,7 +15,7 @@ pub(crate) struct Outlook {
 
 impl Outlook {
     /// The outlook from `tip` in the direction `ahead`; none where that is no direction.
-    pub(crate) fn new(tip: Point, ahead: Vector) -> Option<Self> {
+    pub fn new(tip: Point, ahead: Vector) -> Option<Self> {
         let ahead = ahead.try_normalize(0.0)?;
         // The sides are 45° off, their normals 90° off those.
         Some(Self { tip, inward: [-FRAC_PI_4, FRAC_PI_4].map(|turn| Rotation2::new(turn) * ahead) })
@@ -38,11 +38,7 @@ impl Outlook {
     }
 
     /// Distance from the tip to the nearest of `segments` within the wedge [m], and which that is; none where it sees none within `reach` [m].
-    pub(crate) fn clearance<T>(
-        &self,
-        segments: impl Iterator<Item = (T, Point, Point)>,
-        mut reach: f64,
-    ) -> Option<(f64, T)> {
+    pub fn clearance<T>(&self, segments: impl Iterator<Item = (T, Point, Point)>, mut reach: f64) -> Option<(f64, T)> {
         let mut nearest = None;
         for (which, a, b) in segments {
             let (low, high) = (a.inf(&b), a.sup(&b));

@@ -1,34 +1,6 @@
-//! Rings: orientation, crossings, nesting, and the nearest place on them. Signs are exact.
+//! Where lines touch themselves or each other.
 
-use crate::geometry::{Point, Region, nearest_on_segment, orientation, segments_touch, signed_area};
-
-/// Takes off what repeats: points closer than `tolerance` to the one before, and a last point that repeats the first.
-pub(crate) fn clean_ring(points: &[Point], tolerance: f64) -> Vec<Point> {
-    let mut ring: Vec<Point> = Vec::with_capacity(points.len());
-    for &p in points {
-        if ring.last().is_none_or(|&q| far(p, q, tolerance)) {
-            ring.push(p);
-        }
-    }
-    while ring.len() > 1 && !far(ring[0], ring[ring.len() - 1], tolerance) {
-        ring.pop();
-    }
-    ring
-}
-
-/// Points that are not finite count as far, so that they stay and are reported.
-fn far(p: Point, q: Point, tolerance: f64) -> bool {
-    let distance = (p - q).norm();
-    distance > tolerance || !distance.is_finite()
-}
-
-/// The ring, turned to run counter-clockwise or clockwise.
-pub(crate) fn oriented(mut ring: Vec<Point>, counter_clockwise: bool) -> Vec<Point> {
-    if (signed_area(&ring) > 0.0) != counter_clockwise {
-        ring.reverse();
-    }
-    ring
-}
+use crate::{Point, orientation, segments_touch};
 
 /// An edge of a ring or a piece of a polyline.
 #[derive(Debug, Clone, Copy)]
@@ -42,7 +14,7 @@ struct Edge {
 /// The first place found where lines touch themselves or each other, other than at the joints of their edges.
 ///
 /// `closed`: the lines are rings. Sweeps over x, so that it is fast when edges are short.
-pub(crate) fn find_crossing(lines: &[&[Point]], closed: bool) -> Option<Point> {
+pub fn find_crossing(lines: &[&[Point]], closed: bool) -> Option<Point> {
     let mut edges = Vec::new();
     for (line, points) in lines.iter().enumerate() {
         let count = if closed { points.len() } else { points.len().saturating_sub(1) };
@@ -105,60 +77,8 @@ fn meeting_point(e: &Edge, f: &Edge) -> Point {
     e.a + d * ((w.x * g.y - w.y * g.x) / determinant)
 }
 
-/// A place on a ring of a region.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct RingPlace {
-    /// Ring: 0 the exterior, then the holes.
-    pub(crate) ring: usize,
-    /// Edge of the ring, by its first point.
-    pub(crate) edge: usize,
-    /// Where.
-    pub(crate) point: Point,
-    /// Distance from the point asked for.
-    pub(crate) distance: f64,
-}
-
-/// The place on the rings of `region` nearest to `point`.
-pub(crate) fn nearest_on_rings(region: &Region, point: Point) -> Option<RingPlace> {
-    let mut best: Option<RingPlace> = None;
-    for (ring, points) in region.rings().enumerate() {
-        for edge in 0..points.len() {
-            let on = nearest_on_segment(points[edge], points[(edge + 1) % points.len()], point);
-            let distance = (on - point).norm();
-            if best.is_none_or(|b| distance < b.distance) {
-                best = Some(RingPlace { ring, edge, point: on, distance });
-            }
-        }
-    }
-    best
-}
-
-/// Makes `place` a corner of its ring, unless it is one already; the corner is `place.point` to the bit.
-pub(crate) fn insert_corner(region: &mut Region, place: &RingPlace) {
-    let ring = if place.ring == 0 { &mut region.exterior } else { &mut region.holes[place.ring - 1] };
-    if !ring.contains(&place.point) {
-        ring.insert(place.edge + 1, place.point);
-    }
-}
-
-/// Corners of a circle, counter-clockwise, such that chords leave it by at most `tolerance`; a multiple of 4, at least 16.
-pub(crate) fn circle_ring(center: Point, radius: f64, tolerance: f64) -> Vec<Point> {
-    // Sagitta of a chord: r (1 - cos(pi / n)).
-    let angle = (1.0 - tolerance / radius).clamp(-1.0, 1.0).acos();
-    let quarter = (std::f64::consts::FRAC_PI_4 / angle).ceil();
-    let quarter = if quarter.is_finite() { quarter.clamp(4.0, 1024.0) as usize } else { 4 };
-    let point = |i: usize| {
-        // Whole quarters exactly, so that a circle is as symmetric as its number of corners allows.
-        let (s, c) = (std::f64::consts::FRAC_PI_2 * (i % quarter) as f64 / quarter as f64).sin_cos();
-        let (x, y) = [(c, s), (-s, c), (-c, -s), (s, -c)][i / quarter];
-        Point::new(center.x + radius * x, center.y + radius * y)
-    };
-    (0..4 * quarter).map(point).collect()
-}
-
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
 
     fn square(x: f64, y: f64, half: f64) -> Vec<Point> {
@@ -188,13 +108,5 @@ mod tests {
             assert_eq!(find_crossing(&[&fold], false), Some(fold[1]));
             assert_eq!(find_crossing(&[&placed([(0.3, 0.1), (0.3, -4.4), (0.3001, 1.5)])], false), None);
         }
-    }
-
-    #[test]
-    fn circles_keep_their_tolerance() {
-        let ring = circle_ring(Point::new(1.0, 2.0), 3.0, 0.01);
-        let sagitta = 3.0 * (1.0 - (std::f64::consts::PI / ring.len() as f64).cos());
-        assert!(sagitta <= 0.01 && sagitta > 0.005, "{sagitta}");
-        assert!(signed_area(&ring) > 0.0);
     }
 }

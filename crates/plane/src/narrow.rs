@@ -1,6 +1,6 @@
 //! Places where a region, or the space around it, is narrower than a given width.
 
-use crate::geometry::{Point, Region, Vector, nearest_on_segment, signed_area};
+use crate::{Point, Region, Vector, nearest_on_segment, signed_area};
 use std::collections::{BTreeSet, HashMap};
 
 /// What is narrow.
@@ -227,7 +227,7 @@ fn narrowest_of_each(mut found: Vec<NarrowPlace>, apart: f64) -> Vec<NarrowPlace
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::outline::{circle_ring, oriented};
+    use crate::{circle_ring, oriented};
     use proptest::prelude::*;
     use std::f64::consts::PI;
 

@@ -1,0 +1,25 @@
+//! Predicates whose answer is exact for any coordinates.
+
+use crate::Point;
+
+/// Sign of the turn a → b → c, exact: positive counter-clockwise, negative clockwise, zero on one line.
+///
+/// The value approximates twice the signed area of the triangle (thesis eq. 1); its sign is exact (Shewchuk 1997).
+#[inline]
+pub fn orientation(a: Point, b: Point, c: Point) -> f64 {
+    let coord = |p: Point| robust::Coord { x: p.x, y: p.y };
+    robust::orient2d(coord(a), coord(b), coord(c))
+}
+
+/// Whether the closed segments `a`–`b` and `c`–`d` share a point, decided exactly.
+#[inline]
+pub fn segments_touch(a: Point, b: Point, c: Point, d: Point) -> bool {
+    let (abc, abd) = (orientation(a, b, c), orientation(a, b, d));
+    let (cda, cdb) = (orientation(c, d, a), orientation(c, d, b));
+    if abc == 0.0 && abd == 0.0 && cda == 0.0 && cdb == 0.0 {
+        let overlap = |p: f64, q: f64, r: f64, s: f64| p.min(q) <= r.max(s) && r.min(s) <= p.max(q);
+        return overlap(a.x, b.x, c.x, d.x) && overlap(a.y, b.y, c.y, d.y);
+    }
+    let straddles = |s: f64, t: f64| (s <= 0.0 && t >= 0.0) || (s >= 0.0 && t <= 0.0);
+    straddles(abc, abd) && straddles(cda, cdb)
+}
