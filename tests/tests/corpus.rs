@@ -31,7 +31,8 @@ fn inputs_of_the_corpus_give_what_they_must() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Truth: a panic is a mistake, whatever the input. The formats of states and frames change, so inputs for them are made anew.
+/// Truth: a panic is a mistake, whatever the input. The formats of states and frames change, so inputs for them are
+/// made anew.
 #[test]
 fn new_inputs_are_taken_or_told() {
     let bench = Bench::new();

@@ -25,7 +25,8 @@ fn plane_stress_gives_the_stress_intensity_of_plane_strain() {
     assert!((stress.mode_1 / strain.mode_1 - 1.0).abs() < 5e-3, "{strain:?} {stress:?}");
 }
 
-/// The thesis' scheme is known to give some 10 % too much at 8 cells: the wide kernel makes the crack act longer than it is.
+/// The thesis' scheme is known to give some 10 % too much at 8 cells: the wide kernel makes the crack act longer than
+/// it is.
 #[test]
 fn the_thesis_preset_has_its_known_error() {
     let problem = EdgeCrack::default();

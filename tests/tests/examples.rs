@@ -1,4 +1,5 @@
-//! The examples that are not pulls, coarser than they are shown where that makes them quick. Truth: what the page of each says is to be seen.
+//! The examples that are not pulls, coarser than they are shown where that makes them quick. Truth: what the page of
+//! each says is to be seen.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use fissure_scene::{CrackEnd, Frame, Point, Scene, TipState};

@@ -1,5 +1,6 @@
-//! Coarse versions of the reference cases. Truth: the closed forms and finite element solutions that each case names. Bounds are what was measured at these
-//! resolutions with a margin; the targets, at the standard resolutions of `fissure verify`, are in `docs/verification.md`.
+//! Coarse versions of the reference cases. Truth: the closed forms and finite element solutions that each case names.
+//! Bounds are what was measured at these resolutions with a margin; the targets, at the standard resolutions of
+//! `fissure verify`, are in `docs/verification.md`.
 #![allow(clippy::unwrap_used)]
 
 use fissure_verify::{Options, Report, find};
@@ -9,7 +10,8 @@ fn coarse(name: &str, cells: f64) -> Report {
     find(name).unwrap().run(&options, &mut |_| ()).unwrap()
 }
 
-/// The error of every row whose quantity contains `part` is below `bound` (a fraction where the reference is not zero by nature, else in the row's unit).
+/// The error of every row whose quantity contains `part` is below `bound` (a fraction where the reference is not zero
+/// by nature, else in the row's unit).
 fn within(report: &Report, part: &str, bound: f64) {
     let mut any = false;
     for row in report.rows_of(part) {
@@ -64,7 +66,8 @@ fn double_cantilever() {
     met(&report, "|K_II|/K_I");
 }
 
-/// Measured 0.8 % of K_I and 0.003 in K_II for all but the inner tips of the narrower gap, which is two cells wide here (targets 3 % at 8 cells).
+/// Measured 0.8 % of K_I and 0.003 in K_II for all but the inner tips of the narrower gap, which is two cells wide here
+/// (targets 3 % at 8 cells).
 #[test]
 fn crack_pairs() {
     let report = coarse("crack-pairs", 4.0);
@@ -164,7 +167,8 @@ fn ten_turns() {
     met(&report, "momentum by mass times rim speed, without contact");
 }
 
-/// Measured 1.8 % of the length, 0.8 % of J/G_c and 0.4 % of the work (targets 3, 3 and 2 % at 8 cells): the crack takes what it costs.
+/// Measured 1.8 % of the length, 0.8 % of J/G_c and 0.4 % of the work (targets 3, 3 and 2 % at 8 cells): the crack
+/// takes what it costs.
 #[test]
 fn cantilever_growth() {
     let report = coarse("cantilever-growth", 4.0);

@@ -19,8 +19,8 @@ fn body(id: &str) -> String {
     format!("[[body]]\nname = '{id}'\nmaterial = 'pmma'\nshape = {{ svg = '{id}' }}\n")
 }
 
-/// Total momentum after the first frame, and the time for which loads have pushed until then. Velocities are half a step behind or
-/// ahead, so the time is measured: by a force of 1 N/m on everything.
+/// Total momentum after the first frame, and the time for which loads have pushed until then. Velocities are half a
+/// step behind or ahead, so the time is measured: by a force of 1 N/m on everything.
 fn momentum(scene: &Scene, formulation: Formulation) -> (Vector, f64) {
     let after_a_frame = |loads: Vec<Load>| {
         let mut scene = Scene { loads, ..scene.clone() };
@@ -37,7 +37,8 @@ fn momentum(scene: &Scene, formulation: Formulation) -> (Vector, f64) {
 const TWO: &str = "<path id='b' d='M-20 -5H-10V5H-20Z M10 -10H25V10H10Z'/>";
 const COARSE: &str = "[grid]\nparticle_spacing = 1\n[frames]\nrange = '1-2'\nrate = 2000\n";
 
-/// Truth: impulse is momentum. A force on a body of two parts is one force, shared by their volumes; on one part, that part's.
+/// Truth: impulse is momentum. A force on a body of two parts is one force, shared by their volumes; on one part, that
+/// part's.
 #[test]
 fn a_force_on_a_body_of_two_parts_is_one_force() {
     for formulation in [Formulation::Total, Formulation::Updated] {
@@ -109,8 +110,8 @@ fn names_that_collide_are_refused() {
     assert!(told.contains("`b.3`") && told.contains("did you mean `b."), "{told}");
 }
 
-/// Truth: impulse is momentum, and the length of the edge. A traction on a drawn edge gives what the same traction gives on the
-/// same edge by name, at any place and turn.
+/// Truth: impulse is momentum, and the length of the edge. A traction on a drawn edge gives what the same traction
+/// gives on the same edge by name, at any place and turn.
 #[test]
 fn a_traction_on_a_drawn_edge_is_that_on_the_same_edge_by_name() {
     let load = |select: &str, [x, y]: [f64; 2]| {
@@ -142,7 +143,8 @@ fn turned(angle: f64) -> impl Fn(Vector) -> Vector {
     move |v| Vector::new(angle.cos() * v.x - angle.sin() * v.y, angle.sin() * v.x + angle.cos() * v.y)
 }
 
-/// Truth: rigid motion. Material held along a drawn edge of a turned plate stays; a force there, or a velocity, reaches it.
+/// Truth: rigid motion. Material held along a drawn edge of a turned plate stays; a force there, or a velocity, reaches
+/// it.
 #[test]
 fn a_drawn_edge_is_held_pushed_and_moved() {
     let inner = "<g transform='rotate(30)'><rect id='b' x='-12' y='-7' width='24' height='14'/>

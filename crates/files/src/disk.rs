@@ -37,7 +37,8 @@ pub trait Disk: fmt::Debug + Send + Sync {
     /// As the system's.
     fn length(&self, path: &Path) -> io::Result<u64>;
 
-    /// Begins a file for `folder` under a name that nobody looks for. It goes when it is dropped before it is published.
+    /// Begins a file for `folder` under a name that nobody looks for. It goes when it is dropped before it is
+    /// published.
     ///
     /// # Errors
     /// As the system's.

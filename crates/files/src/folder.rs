@@ -83,8 +83,8 @@ impl Folder {
         missing_is_none(self.disk.length(&path)).map_err(FileError::of("read", &path))
     }
 
-    /// Writes a file; one of that name is replaced. It has its name only when all of its content is on the disk. That the
-    /// name is, too, takes [`Folder::sync`].
+    /// Writes a file; one of that name is replaced. It has its name only when all of its content is on the disk. That
+    /// the name is, too, takes [`Folder::sync`].
     ///
     /// # Errors
     /// When it cannot be written; what was under the name is then still there.
@@ -99,8 +99,8 @@ impl Folder {
         written().map_err(FileError::of("write", &path))
     }
 
-    /// As [`Folder::write`], but without waiting for the disk, for what can be made again: after a power cut such a file may be
-    /// empty or hold zeros; after any other death it is whole.
+    /// As [`Folder::write`], but without waiting for the disk, for what can be made again: after a power cut such a
+    /// file may be empty or hold zeros; after any other death it is whole.
     ///
     /// # Errors
     /// As [`Folder::write`].

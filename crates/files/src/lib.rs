@@ -1,9 +1,9 @@
 //! Files that appear whole or not at all. Everything that Fissure writes goes through a [`Folder`].
 //!
-//! - [`Folder::write`] puts a file under its name only when all of it is on the disk: who reads sees the old file or the
-//!   new one, also after a kill, on a full disk and after a power cut.
-//! - [`Folder::append`] adds to a file; what was there before stays whatever happens. Readers have to expect a last part
-//!   that is cut off.
+//! - [`Folder::write`] puts a file under its name only when all of it is on the disk: who reads sees the old file or
+//!   the new one, also after a kill, on a full disk and after a power cut.
+//! - [`Folder::append`] adds to a file; what was there before stays whatever happens. Readers have to expect a last
+//!   part that is cut off.
 //! - Names are checked: none reaches out of its folder.
 //! - A [`Lock`] keeps a second process out of a folder and dies with its owner.
 //!

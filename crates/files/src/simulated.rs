@@ -69,7 +69,8 @@ impl SimulatedDisk {
         self.lock().written
     }
 
-    /// The power goes: of what was not synced each name and each content is kept, lost or kept in part, as `seed` has it.
+    /// The power goes: of what was not synced each name and each content is kept, lost or kept in part, as `seed` has
+    /// it.
     pub fn cut_power(&self, seed: u64) {
         let mut content = self.lock();
         let mut random = Pcg64::seed_from_u64(seed);

@@ -31,7 +31,8 @@ pub(crate) fn revision(root: &Path, sources: &[PathBuf]) -> Option<String> {
     Some(if is_clean { commit } else { commit + "-dirty" })
 }
 
-/// Files that change when HEAD moves: HEAD itself, when another branch is checked out, and its log, when the branch moves.
+/// Files that change when HEAD moves: HEAD itself, when another branch is checked out, and its log, when the branch
+/// moves.
 pub(crate) fn places_of_head(root: &Path) -> Vec<PathBuf> {
     let place = |name| git(root, &["rev-parse", "--git-path", name]).map(|path| root.join(path));
     ["HEAD", "logs/HEAD"].into_iter().filter_map(place).collect()

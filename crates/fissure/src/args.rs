@@ -110,7 +110,8 @@ pub(crate) struct NewArguments {
 /// The scene and what overrides it.
 #[derive(Debug, Args)]
 pub(crate) struct SceneArguments {
-    /// The scene file, or the folder it is in, or an SVG drawing whose elements or layers are called body, crack, guide, collider.
+    /// The scene file, or the folder it is in, or an SVG drawing whose elements or layers are called body, crack,
+    /// guide, collider.
     #[arg(value_hint = ValueHint::AnyPath)]
     pub(crate) scene: PathBuf,
     /// Of a drawing: what its bodies are made of, glass, pmma, snow or jello.

@@ -76,7 +76,8 @@ fn json(scene: &Scene, estimate: &Estimate) -> String {
     format!("{value}\n")
 }
 
-/// Wall time that making and writing the meshes of one point of outlines and cracks takes, per frame and format [s]; measured with the 13 examples.
+/// Wall time that making and writing the meshes of one point of outlines and cracks takes, per frame and format [s];
+/// measured with the 13 examples.
 const SECONDS_PER_POINT: f64 = 5e-6;
 
 /// Wall time for the meshes of all frames [s]: it goes with the points of outlines and cracks.

@@ -19,7 +19,8 @@ pub(crate) struct Failure {
     pub(crate) remedy: Option<String>,
     /// Where in a text file.
     pub(crate) snippet: Option<Box<Snippet>>,
-    /// Keys of the scene that are the cause, counted as in the scene; [`SceneFile::show`](crate::scene_file::SceneFile::show) makes a snippet of them.
+    /// Keys of the scene that are the cause, counted as in the scene;
+    /// [`SceneFile::show`](crate::scene_file::SceneFile::show) makes a snippet of them.
     pub(crate) keys: Vec<KeyPath>,
 }
 

@@ -1,4 +1,5 @@
-//! Ctrl-C: before the first frame and the second time it ends the program at once; otherwise the first asks to finish cleanly.
+//! Ctrl-C: before the first frame and the second time it ends the program at once; otherwise the first asks to finish
+//! cleanly.
 
 use crate::args::TalkArguments;
 use crate::exit::Exit;

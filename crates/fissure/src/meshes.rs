@@ -57,7 +57,8 @@ impl<'a> Mesher<'a> {
         Ok(Self { scene, folder: folder.clone(), options, formats: formats.clone(), report, outcome })
     }
 
-    /// Makes and writes the meshes of the frame that `get` gives. A failure is reported at once and remembered; the other frames go on.
+    /// Makes and writes the meshes of the frame that `get` gives. A failure is reported at once and remembered; the
+    /// other frames go on.
     pub(crate) fn make(&self, number: i64, get: impl FnOnce() -> Result<Frame, Failure>) {
         let made = contain(|| {
             let meshes = post_frame(self.scene, &get()?, &self.options)?;

@@ -48,8 +48,8 @@ impl Queue {
 /// Runs `produce` on this thread; each frame it sends and each frame of `backlog` goes to `work` on one of `workers`
 /// threads. Waits for all of them.
 ///
-/// `work` reports its own outcome; frames may finish in any order. Sending waits while the workers are behind. Where the
-/// system has no room for so many threads, fewer do the work.
+/// `work` reports its own outcome; frames may finish in any order. Sending waits while the workers are behind. Where
+/// the system has no room for so many threads, fewer do the work.
 ///
 /// # Errors
 /// When not one thread can be started; `produce` has not begun then.

@@ -314,7 +314,8 @@ fn signal_when(child: &std::process::Child, sign: &Path, signal: &str) {
     assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
 }
 
-/// A run long enough to be interrupted, into the folder `output`: a third of a second on a fast machine, while a signal takes some milliseconds to arrive.
+/// A run long enough to be interrupted, into the folder `output`: a third of a second on a fast machine, while a signal
+/// takes some milliseconds to arrive.
 fn long(output: &str) -> [&str; 6] {
     ["run", "plate.toml", "--set", "grid.particle_spacing=0.15", "--output", output]
 }

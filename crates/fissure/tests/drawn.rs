@@ -42,8 +42,8 @@ fn run<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
         .collect()
 }
 
-/// Truth: the drawing. Names in any case, on elements and on layers, are what they say; the scene that is printed and written is the one
-/// that runs, and gives the same take.
+/// Truth: the drawing. Names in any case, on elements and on layers, are what they say; the scene that is printed and
+/// written is the one that runs, and gives the same take.
 #[test]
 fn a_drawing_runs_and_its_scene_gives_the_same_take() {
     let folder = folder(PLATE);
@@ -83,8 +83,8 @@ fn a_drawing_runs_and_its_scene_gives_the_same_take() {
     assert!(made.len() >= 3 && made == meshes("again"));
 }
 
-/// Truth: the promise. The drawing run again leaves an edited scene as it is, with or without `--overwrite`, and says what to run;
-/// an untouched one follows the drawing.
+/// Truth: the promise. The drawing run again leaves an edited scene as it is, with or without `--overwrite`, and says
+/// what to run; an untouched one follows the drawing.
 #[test]
 fn an_edited_scene_is_kept() {
     let folder = folder(PLATE);

@@ -92,7 +92,8 @@ fn pulled(force: &str) -> String {
     format!("{BARE}{}{}", load("left", "-"), load("right", ""))
 }
 
-/// Truth: the construction of each scene. Every warning comes once, with its value and line, and the sound scene has none.
+/// Truth: the construction of each scene. Every warning comes once, with its value and line, and the sound scene has
+/// none.
 #[test]
 fn what_will_go_wrong_is_said_with_value_and_line() {
     let (exit, _, told) = said(&pulled("20e6"), "check", &["--strict"]);

@@ -40,7 +40,8 @@ fn fissure(folder: &TempDir) -> Command {
     command
 }
 
-/// Truth: no machine has the memory of a hundred million particles here; the answer comes before anything is laid or written.
+/// Truth: no machine has the memory of a hundred million particles here; the answer comes before anything is laid or
+/// written.
 #[test]
 fn a_run_that_does_not_fit_is_refused_at_once() {
     let folder = folder_with(&plate("total", 4e-5, ""));

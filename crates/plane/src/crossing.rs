@@ -58,7 +58,8 @@ fn touch_wrongly(e: &Edge, f: &Edge, length: usize, closed: bool) -> bool {
     runs_back && (is_fold || orientation(first.a, first.b, second.b) == 0.0)
 }
 
-/// A line that turns by half a turn to within this angle runs back over itself [rad]: more than rounding, less than anybody draws.
+/// A line that turns by half a turn to within this angle runs back over itself [rad]: more than rounding, less than
+/// anybody draws.
 const FOLD: f64 = 1e-6;
 
 fn meeting_point(e: &Edge, f: &Edge) -> Point {
@@ -98,7 +99,8 @@ mod tests {
         assert!(find_crossing(&[&square(0.0, 0.0, 1.0), &square(2.0, 0.0, 1.0)], true).is_some());
     }
 
-    /// Truth: the construction. A line that runs back over itself does so at any turn, where rounding moves its points off each other.
+    /// Truth: the construction. A line that runs back over itself does so at any turn, where rounding moves its points
+    /// off each other.
     #[test]
     fn folds_are_found_at_any_turn() {
         for turn in 0..1000 {

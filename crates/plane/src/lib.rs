@@ -1,10 +1,11 @@
 //! Geometry of the plane: [`Point`]s, polylines, rings and [`Region`]s of them, and predicates with exact signs.
 //!
-//! This crate promises that which side of a line a point is on, whether two segments touch, and whether a region contains a point
-//! are decided exactly, whatever the coordinates ([`orientation`]). Lengths and areas are rounded as any sum is.
+//! This crate promises that which side of a line a point is on, whether two segments touch, and whether a region
+//! contains a point are decided exactly, whatever the coordinates ([`orientation`]). Lengths and areas are rounded as
+//! any sum is.
 //!
-//! It reads no file and knows no scene. The solver asks it for every pair of a particle and a node near a crack, so it is compiled for
-//! speed and its small functions may be inlined into the caller.
+//! It reads no file and knows no scene. The solver asks it for every pair of a particle and a node near a crack, so it
+//! is compiled for speed and its small functions may be inlined into the caller.
 //!
 //! ```
 //! use fissure_plane::{Point, Region, find_crossing, segments_touch};

@@ -25,10 +25,11 @@ pub struct NarrowPlace {
     pub width: f64,
 }
 
-/// Parts of an outline that face each other are farther apart along it than this, in widths looked for: nearer ones are a rough edge.
+/// Parts of an outline that face each other are farther apart along it than this, in widths looked for: nearer ones are
+/// a rough edge.
 const FAR_ALONG: f64 = 6.0;
-/// And farther than this, in their own distance: beside a corner the way around it is 1/sin(α/2) of the width, so that corners above 6°
-/// are no narrow places.
+/// And farther than this, in their own distance: beside a corner the way around it is 1/sin(α/2) of the width, so that
+/// corners above 6° are no narrow places.
 const CORNER: f64 = 20.0;
 /// Narrow places nearer to a narrower one than this, in widths looked for, belong to it.
 const ONE_PLACE: f64 = 4.0;
@@ -53,10 +54,11 @@ struct Run {
     high: Point,
 }
 
-/// The places where `region`, a gap in it or a hole is narrower than `width` [m], the narrowest of each neighbourhood, from the narrowest on.
+/// The places where `region`, a gap in it or a hole is narrower than `width` [m], the narrowest of each neighbourhood,
+/// from the narrowest on.
 ///
-/// Corners are not meant, however sharp the angle down to some 6°, nor is what is rough below the width. Time and memory grow with the
-/// number of corners and with the length of the rings in widths.
+/// Corners are not meant, however sharp the angle down to some 6°, nor is what is rough below the width. Time and
+/// memory grow with the number of corners and with the length of the rings in widths.
 pub fn narrow_places(region: &Region, width: f64) -> Vec<NarrowPlace> {
     let mut found = Vec::new();
     let lengths: Vec<f64> = region.rings().map(perimeter).collect();
@@ -239,7 +241,8 @@ mod tests {
         oriented(list.iter().map(place).collect(), true)
     }
 
-    /// A dumbbell: two plates joined by a bridge of the given width and length; of length 0 by a place between two notches.
+    /// A dumbbell: two plates joined by a bridge of the given width and length; of length 0 by a place between two
+    /// notches.
     fn dumbbell(width: f64, length: f64) -> Vec<(f64, f64)> {
         let (w, l) = (0.5 * width, 0.5 * length);
         if length > 0.0 {
@@ -275,8 +278,8 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(300))]
-        /// Truth: the construction. The neck of a dumbbell is found with its width and place when it is narrower than what is looked
-        /// for, at any turn, size and place, and nothing is found when it is wider.
+        /// Truth: the construction. The neck of a dumbbell is found with its width and place when it is narrower than
+        /// what is looked for, at any turn, size and place, and nothing is found when it is wider.
         #[test]
         fn the_neck_of_a_dumbbell_is_found(width in 0.01_f64..2.0, length in prop_oneof![Just(0.0), 1.5_f64..6.0], scale in -6.0_f64..6.0,
                                            turn in -PI..PI, mirrored in any::<bool>(), x in -5.0_f64..5.0) {
@@ -302,7 +305,8 @@ mod tests {
             prop_assert_eq!(found.first().map(|p| p.kind), (width < 1.0).then_some(NarrowKind::Gap));
         }
 
-        /// Truth: ordinary drawings. Stars with corners down to 8°, discs, rings and rough plates have no narrow places.
+        /// Truth: ordinary drawings. Stars with corners down to 8°, discs, rings and rough plates have no narrow
+        /// places.
         #[test]
         fn corners_are_no_narrow_places(points in 3_usize..14, sharp in 8.0_f64..60.0, turn in -PI..PI, rough in 0.0_f64..0.3, seed in any::<u64>()) {
             let width = 1.0;
@@ -326,7 +330,8 @@ mod tests {
         }
     }
 
-    /// Truth: brute force over all pairs of sampled places of the outline, for ligaments between holes at random places.
+    /// Truth: brute force over all pairs of sampled places of the outline, for ligaments between holes at random
+    /// places.
     #[test]
     fn the_narrowest_ligament_is_that_of_all_pairs() {
         let mut state = 88172645463325252_u64;

@@ -37,7 +37,8 @@ impl Outlook {
         (from <= to).then(|| nearest_on_segment(a + along * from, a + along * to, self.tip))
     }
 
-    /// Distance from the tip to the nearest of `segments` within the wedge [m], and which that is; none where it sees none within `reach` [m].
+    /// Distance from the tip to the nearest of `segments` within the wedge [m], and which that is; none where it sees
+    /// none within `reach` [m].
     pub fn clearance<T>(&self, segments: impl Iterator<Item = (T, Point, Point)>, mut reach: f64) -> Option<(f64, T)> {
         let mut nearest = None;
         for (which, a, b) in segments {
@@ -69,8 +70,8 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(500))]
-        /// Truth: brute force. Rays from the tip, a five-hundredth of the wedge apart, meet none of the lines before the clearance,
-        /// and somewhere in the wedge a place of the lines is that far.
+        /// Truth: brute force. Rays from the tip, a five-hundredth of the wedge apart, meet none of the lines before
+        /// the clearance, and somewhere in the wedge a place of the lines is that far.
         #[test]
         fn the_clearance_is_the_shortest_ray_ahead(line in points(6), direction in -PI..PI, size in -6.0_f64..6.0, reach in 0.1_f64..3.0) {
             const RAYS: i32 = 250;

@@ -27,7 +27,8 @@ impl Region {
 
     /// Whether `point` lies inside: an odd number of ring crossings to the right, decided by exact predicates.
     ///
-    /// A point exactly on an edge belongs to the region on one side only (half-open rule), so abutting regions share no point.
+    /// A point exactly on an edge belongs to the region on one side only (half-open rule), so abutting regions share no
+    /// point.
     pub fn contains(&self, point: Point) -> bool {
         let mut inside = false;
         for ring in self.rings() {

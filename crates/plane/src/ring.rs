@@ -42,7 +42,8 @@ pub fn oriented(mut ring: Vec<Point>, counter_clockwise: bool) -> Vec<Point> {
     ring
 }
 
-/// Corners of a circle, counter-clockwise, such that chords leave it by at most `tolerance`; a multiple of 4, at least 16.
+/// Corners of a circle, counter-clockwise, such that chords leave it by at most `tolerance`; a multiple of 4, at least
+/// 16.
 pub fn circle_ring(center: Point, radius: f64, tolerance: f64) -> Vec<Point> {
     // Sagitta of a chord: r (1 - cos(pi / n)).
     let angle = (1.0 - tolerance / radius).clamp(-1.0, 1.0).acos();

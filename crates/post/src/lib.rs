@@ -1,6 +1,6 @@
 //! From frames to files: a [`Frame`](fissure_scene::Frame) becomes checked [`Mesh`]es ([`post_frame`]), these become
-//! GLB and PLY files ([`write_frame`]), and a [`Manifest`] lists them. Knows nothing of the solver: a take on disk can be
-//! posted again with another thickness.
+//! GLB and PLY files ([`write_frame`]), and a [`Manifest`] lists them. Knows nothing of the solver: a take on disk can
+//! be posted again with another thickness.
 //!
 //! The stages of a cracked body, one module each:
 //! 1. `snap`: all positions go onto a power-of-two grid that is exact in `f32`.

@@ -88,8 +88,8 @@ impl Manifest {
         Ok(manifest)
     }
 
-    /// Removes the meshes of the scene `scene` that the list in `folder` holds and that say themselves that Fissure made
-    /// them, and the list. All other files stay.
+    /// Removes the meshes of the scene `scene` that the list in `folder` holds and that say themselves that Fissure
+    /// made them, and the list. All other files stay.
     ///
     /// # Errors
     /// When the list is not one of Fissure's, or a file cannot be removed.

@@ -18,14 +18,14 @@ use fissure_scene::{CrackEnd, CrackFrame, Point, Vector};
 /// is two: still material, no wall.
 ///
 /// At a tip the faces meet halfway between their ends. At a mouth the closing edge is, to the bit, the reverse of the
-/// edge between the two outline tracers there, so that both cancel and the mouth is open, however far the two sides have
-/// moved apart; likewise at a junction, against the face of the other crack.
+/// edge between the two outline tracers there, so that both cancel and the mouth is open, however far the two sides
+/// have moved apart; likewise at a junction, against the face of the other crack.
 ///
 /// `first`: where the arc length is counted from (a rest position on the crack), so that textures stay put when the
 /// crack grows at its start; none: its first point.
 ///
-/// Returns 2 n edges for n crack points: the n − 1 of the face above, the closing edge at the end, the n − 1 of the face
-/// below, the closing edge at the start. Edges whose ends fall on one grid point are among them.
+/// Returns 2 n edges for n crack points: the n − 1 of the face above, the closing edge at the end, the n − 1 of the
+/// face below, the closing edge at the start. Edges whose ends fall on one grid point are among them.
 pub(crate) fn opening_edges(crack: &CrackFrame, first: Option<Point>, grid: Grid) -> Vec<SourceEdge> {
     let count = crack.rest.len();
     let arcs = arc_lengths(&crack.rest, first);

@@ -6,8 +6,8 @@ use serde::Deserialize;
 /// How [`crate::Provenance::tool`] begins, whatever the version.
 pub(crate) const TOOL: &str = "fissure ";
 
-/// Whether the bytes of a mesh file say that Fissure wrote them. A file that is empty or of zeros counts, which a power cut
-/// leaves of a mesh: there is nothing to lose.
+/// Whether the bytes of a mesh file say that Fissure wrote them. A file that is empty or of zeros counts, which a power
+/// cut leaves of a mesh: there is nothing to lose.
 pub(crate) fn is_ours(format: Format, bytes: &[u8]) -> bool {
     let says_so = match format {
         Format::Glb => glb_generator(bytes).is_some_and(|generator| generator.starts_with(TOOL)),

@@ -38,8 +38,9 @@ fn is_sliver(contour: &[Edge]) -> bool {
     twice_area(contour).unsigned_abs() as f64 <= THINNEST * length
 }
 
-/// Gives each polygon of the body the fragment that most of the particles inside it belong to (of equally many the lowest
-/// number); a polygon without particles gets that of the nearest. Polygons smaller than `smallest` [m²] are left out.
+/// Gives each polygon of the body the fragment that most of the particles inside it belong to (of equally many the
+/// lowest number); a polygon without particles gets that of the nearest. Polygons smaller than `smallest` [m²] are left
+/// out.
 pub(crate) fn pieces(
     shapes: Vec<Shape>,
     grid: Grid,

@@ -4,9 +4,9 @@
 //! and giving each pass its own copy of the vertex does not help, because readers merge equal vertices. So the contours
 //! are really parted there, by a small diamond around the vertex. If the narrowest of the wedges that meet there is
 //! material, the diamond is cut out: what hangs together in a point does not hang together. If it is empty, the diamond
-//! is filled: faces that touch in a point are in contact. Either way the narrowest wedge ends at the rim of the diamond.
-//! (Cutting always fails for long thin wedges: both sides of the empty wedge meet the rim in one grid point, and that is
-//! the next pinch point.)
+//! is filled: faces that touch in a point are in contact. Either way the narrowest wedge ends at the rim of the
+//! diamond. (Cutting always fails for long thin wedges: both sides of the empty wedge meet the rim in one grid point,
+//! and that is the next pinch point.)
 
 use crate::boolean::{Contour, Edge, Operation, Shape, SourceIndex, combine};
 use crate::snap::GridPoint;
@@ -71,7 +71,8 @@ fn remedy(arms: &[Arm]) -> Operation {
     let wedge = |i: usize| {
         let ((x, y), (u, v)) = (around[i].direction, around[(i + 1) % around.len()].direction);
         let [x, y, u, v] = [x, y, u, v].map(|n| n as f64);
-        // Products of grid coordinates are exact in f64, so wedges far narrower than the rounding of an angle compare well.
+        // Products of grid coordinates are exact in f64, so wedges far narrower than the rounding of an angle compare
+        // well.
         (x * v - y * u).atan2(x * u + y * v).rem_euclid(TAU)
     };
     let narrowest = (0..around.len()).min_by(|&i, &j| wedge(i).total_cmp(&wedge(j)));

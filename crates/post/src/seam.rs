@@ -1,7 +1,8 @@
 //! Where a crack ends on a boundary: that boundary must be parted there, or a skin would span the end of the crack.
 //!
-//! A ring has two tracers at a mouth, and a crack two points at a junction, equal to the end points of the faces that come
-//! in there. Where they are missing (a crack that has just arrived, a take of another program) they are put in here.
+//! A ring has two tracers at a mouth, and a crack two points at a junction, equal to the end points of the faces that
+//! come in there. Where they are missing (a crack that has just arrived, a take of another program) they are put in
+//! here.
 
 use crate::snap::Grid;
 use crate::source::{Carried, SourceEdge};
@@ -47,7 +48,8 @@ pub(crate) fn guests(crack: &CrackFrame, grid: Grid) -> Vec<Guest> {
     [start, end].into_iter().filter(|guest| guest.end != CrackEnd::Tip).collect()
 }
 
-/// Parts the nearest of the closed boundaries `hosts` at the end of `guest`, unless it is parted already or the end is closed.
+/// Parts the nearest of the closed boundaries `hosts` at the end of `guest`, unless it is parted already or the end is
+/// closed.
 pub(crate) fn join(hosts: &mut [Vec<SourceEdge>], guest: &Guest) {
     let (arrive, leave) = (guest.arrive.place, guest.leave.place);
     let is_parted = |edge: &SourceEdge| edge.a == arrive && edge.b == leave;

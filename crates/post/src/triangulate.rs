@@ -8,7 +8,8 @@ use std::collections::HashMap;
 
 /// Delaunay triangles of `shape`, counter-clockwise, as indices into its vertices (contour after contour).
 ///
-/// `shape` must be valid and without pinch points, as [`crate::boolean`] and [`crate::pinch`] make it. No vertex is added.
+/// `shape` must be valid and without pinch points, as [`crate::boolean`] and [`crate::pinch`] make it. No vertex is
+/// added.
 pub(crate) fn triangulate(shape: &Shape) -> Vec<[u32; 3]> {
     let contours: Vec<Vec<GridPoint>> = shape.iter().map(|contour| contour.iter().map(|e| e.a).collect()).collect();
     let found: IntTriangulation<i64, u32> = contours.uncheck_triangulate().into_delaunay().into_triangulation();

@@ -157,7 +157,8 @@ fn a_branch_opens_into_the_crack_it_ends_on() {
     };
     let frame = frame(&region, 1, &[trunk, branch]);
     let meshes = cracked(&scene, &frame);
-    // Trunk: a strip of height 2a over 8 m and a triangle of 4 m; branch: a strip 2b wide and a triangle; no skin between.
+    // Trunk: a strip of height 2a over 8 m and a triangle of 4 m; branch: a strip 2b wide and a triangle; no skin
+    // between.
     let trunk = 2.0 * a * 8.0 + 0.5 * 2.0 * a * 4.0 - 0.5 * a * b;
     let branch = 2.0 * b * (2.0 - a) + 0.5 * 2.0 * b * 2.0;
     let expected = brute_force_area(&frame);
@@ -377,7 +378,8 @@ fn all_parts_of_a_scene() {
     assert_eq!(part(4)[0].vertices.len(), 400);
 }
 
-/// A random crack: where it runs, how its faces move (from 1e-9 to 0.1 m, opening, closing or sliding), what its ends are.
+/// A random crack: where it runs, how its faces move (from 1e-9 to 0.1 m, opening, closing or sliding), what its ends
+/// are.
 fn random_crack() -> impl Strategy<Value = Opened> {
     let ends = prop_oneof![Just(0), Just(1), Just(2)];
     let motion = (-9.0..-1.0_f64, -1.0..1.0_f64, -1.0..1.0_f64);
@@ -410,7 +412,8 @@ fn agrees_with_brute_force(cracks: &[Opened]) -> Result<(), String> {
     let frame = frame(&region, 3, cracks);
     let meshes = post_frame(&scene, &frame, &options(&scene)).map_err(|e| e.to_string())?.parts.remove(0).1;
     let (found, expected) = (area(&meshes), brute_force_area(&frame));
-    // Snapping moves each side by half a step (2⁻²⁰ m), filled slivers are two steps wide, the longest contours have 200 m.
+    // Snapping moves each side by half a step (2⁻²⁰ m), filled slivers are two steps wide, the longest contours have
+    // 200 m.
     let tolerance = 200.0 * 2.5 * 2.0_f64.powi(-19);
     if (found - expected).abs() < tolerance { Ok(()) } else { Err(format!("area {found} instead of {expected}")) }
 }

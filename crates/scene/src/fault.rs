@@ -90,7 +90,8 @@ impl SceneFault {
     }
 }
 
-/// Something in a scene that can be simulated but will hardly give what its author wants: where it is, what it is, and what to do about it.
+/// Something in a scene that can be simulated but will hardly give what its author wants: where it is, what it is, and
+/// what to do about it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Warning {
     /// The key of the scene file that holds the value that matters.
@@ -108,7 +109,8 @@ impl Warning {
     }
 }
 
-/// "; did you mean `x`?"-like help: the known name nearest to `name`, if one is near enough, and all of them if they are few.
+/// "; did you mean `x`?"-like help: the known name nearest to `name`, if one is near enough, and all of them if they
+/// are few.
 pub(crate) fn nearest(name: &str, known: &[impl AsRef<str>]) -> String {
     let best = known
         .iter()

@@ -178,8 +178,8 @@ pub struct TipRecord {
     pub equivalent: f64,
     /// Fracture toughness K_Ic at the tip [Pa·√m].
     pub fracture_toughness: f64,
-    /// Mean speed of the tip since the last frame [m/s]. A leap, over the last ligament or into two branches, counts as far as the speed limit would have
-    /// let the tip run, the rest in the frames after it.
+    /// Mean speed of the tip since the last frame [m/s]. A leap, over the last ligament or into two branches, counts as
+    /// far as the speed limit would have let the tip run, the rest in the frames after it.
     pub speed: f64,
     /// Length of the whole crack at rest [m].
     pub length: f64,

@@ -3,8 +3,8 @@
 //! This crate promises validated input (every number finite and in range, every reference resolved, geometry simple and
 //! oriented) and takes that another program can read. It knows no physics and draws nothing.
 //!
-//! [`load`] reads a scene file and its drawing, [`load_with_warnings`] also says what will hardly go well; scenes made in code call
-//! [`Scene::validate`].
+//! [`load`] reads a scene file and its drawing, [`load_with_warnings`] also says what will hardly go well; scenes made
+//! in code call [`Scene::validate`].
 
 pub mod document;
 mod fault;

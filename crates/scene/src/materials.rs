@@ -8,8 +8,8 @@ pub(crate) const SNOW_PLASTICITY: Plasticity =
 
 /// The materials that come with Fissure: snow, pmma, glass, jello.
 ///
-/// Young's modulus, Poisson's ratio, density and fracture toughness are those of table 1 of Fumoto 2022. Its header gives the toughness in
-/// MPa·√m, but the entries (1.2M, 0.75M, 10, 10) are Pa·√m.
+/// Young's modulus, Poisson's ratio, density and fracture toughness are those of table 1 of Fumoto 2022. Its header
+/// gives the toughness in MPa·√m, but the entries (1.2M, 0.75M, 10, 10) are Pa·√m.
 pub fn material_presets() -> Vec<Material> {
     let material = |name: &str, [young_modulus, poisson_ratio, density, fracture_toughness]: [f64; 4]| Material {
         name: name.into(),

@@ -97,7 +97,8 @@ impl Body {
     }
 }
 
-/// A part of a body of another material, perfectly bonded to the rest. It may reach beyond the body; only the common part counts.
+/// A part of a body of another material, perfectly bonded to the rest. It may reach beyond the body; only the common
+/// part counts.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Inclusion {
     /// Where it is at rest.
@@ -155,10 +156,11 @@ pub struct Guide {
     pub name: String,
     /// Points, the first at the tip [m], at rest.
     pub points: Vec<Point>,
-    /// How much the path decides the direction of growth, 0 to 1: 0 the physical direction, 1 the drawn one, a blend between.
+    /// How much the path decides the direction of growth, 0 to 1: 0 the physical direction, 1 the drawn one, a blend
+    /// between.
     pub strength: f64,
-    /// How far along the guide the tip may have come: (time [s], fraction of the guide's length 0 to 1), both rising. Empty: fracture mechanics
-    /// decide when the crack grows.
+    /// How far along the guide the tip may have come: (time [s], fraction of the guide's length 0 to 1), both rising.
+    /// Empty: fracture mechanics decide when the crack grows.
     pub schedule: Curve,
 }
 

@@ -94,8 +94,8 @@ pub enum ModeSplit {
 pub enum TipDivision {
     /// By line crossing alone: the effective tip jumps from node to node.
     LineCrossing,
-    /// The effective tip moves smoothly. Total formulation: nodes are split before the tip reaches them, and springs that soften as it passes hold their sides
-    /// together. Updated formulation: particles at the tip are partly cut.
+    /// The effective tip moves smoothly. Total formulation: nodes are split before the tip reaches them, and springs
+    /// that soften as it passes hold their sides together. Updated formulation: particles at the tip are partly cut.
     PartlyCut,
 }
 

@@ -5,8 +5,9 @@ use crate::settings::OutputSettings;
 use sha2::{Digest, Sha256};
 
 impl Scene {
-    /// SHA-256 over all that the frames of this scene depend on, in hexadecimal, and over nothing else: not over names, the
-    /// output, how many frames there are, or how the scene was written down. Scenes of the same hash give the same frames.
+    /// SHA-256 over all that the frames of this scene depend on, in hexadecimal, and over nothing else: not over names,
+    /// the output, how many frames there are, or how the scene was written down. Scenes of the same hash give the same
+    /// frames.
     pub fn simulation_hash(&self) -> String {
         let mut scene = self.clone();
         scene.hash.clear();

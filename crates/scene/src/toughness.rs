@@ -83,7 +83,8 @@ impl ToughnessImage {
 }
 
 impl Scene {
-    /// Factor on the fracture toughness of body number `body` at a place of it at rest [m]: the product of all patches there.
+    /// Factor on the fracture toughness of body number `body` at a place of it at rest [m]: the product of all patches
+    /// there.
     pub fn toughness_factor(&self, body: usize, place: Point) -> f64 {
         self.toughness.iter().map(|patch| patch.factor(body, place)).product()
     }
@@ -93,7 +94,8 @@ impl Scene {
 mod tests {
     use super::*;
 
-    /// Truth: a bilinear field sampled at pixel centres is reproduced between them to round-off, the nearest value beyond, 1 outside.
+    /// Truth: a bilinear field sampled at pixel centres is reproduced between them to round-off, the nearest value
+    /// beyond, 1 outside.
     #[test]
     fn images_reproduce_bilinear_fields() {
         let (columns, rows, pixel) = (4_usize, 3_usize, Vector::new(0.5, 2.0));

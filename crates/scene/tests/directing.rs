@@ -62,7 +62,8 @@ fn regions_change_the_material_and_the_later_one_holds() {
     }
 }
 
-/// Truth: the picture as an eye sees it: left is left, the top row is the highest y; where patches overlap they multiply.
+/// Truth: the picture as an eye sees it: left is left, the top row is the highest y; where patches overlap they
+/// multiply.
 #[test]
 fn pictures_lie_on_bodies_the_right_way_up() {
     let folder = Folder::new(

@@ -52,7 +52,8 @@ fn covers(regions: &[Region], p: Point) -> bool {
     regions.iter().any(|r| r.contains(p))
 }
 
-/// Corners as path data, without Z: SVG closes what it fills. Half numbers, so that corners lie on edges and on each other.
+/// Corners as path data, without Z: SVG closes what it fills. Half numbers, so that corners lie on edges and on each
+/// other.
 fn path_of(corners: &[(i32, i32)]) -> (String, Vec<Point>) {
     let data: Vec<String> =
         corners.iter().map(|(x, y)| format!("{} {}", f64::from(*x) / 2.0, f64::from(*y) / 2.0)).collect();
@@ -71,8 +72,8 @@ fn corners() -> impl Strategy<Value = Vec<(i32, i32)>> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
-    /// Truth: the winding number of the path around each place, counted edge by edge. What is left may be loaded as bodies,
-    /// so rings neither cross nor touch.
+    /// Truth: the winding number of the path around each place, counted edge by edge. What is left may be loaded as
+    /// bodies, so rings neither cross nor touch.
     #[test]
     fn crossing_outlines_cover_what_their_fill_rule_fills(
         first in corners(), second in corners(), even_odd in any::<bool>()
@@ -230,7 +231,8 @@ fn dots_are_drawn() {
     }
 }
 
-/// Truth: areas and counts by hand. Shapes that overlap or share an edge are one body, those that meet in a corner are two.
+/// Truth: areas and counts by hand. Shapes that overlap or share an edge are one body, those that meet in a corner are
+/// two.
 #[test]
 fn groups_are_united() {
     let square = |x: f64, y: f64| format!("<rect x='{x}' y='{y}' width='10' height='10'/>");

@@ -19,7 +19,8 @@ fn svg(inner: &str) -> String {
 
 const SQUARE: &str = "<rect id='b' width='50' height='50'/>";
 
-/// Truth: each limit is named in the message, and none takes longer than two seconds (ten here: test machines are busy).
+/// Truth: each limit is named in the message, and none takes longer than two seconds (ten here: test machines are
+/// busy).
 #[test]
 fn limits_are_told_and_quick() {
     let many = |n: usize, part: &str| part.repeat(n);

@@ -309,8 +309,8 @@ fn the_schema_describes_every_key() {
 const HOLED: &str = "[[body]]\nname = 'plate'\nmaterial = 'pmma'\nshape = { polygon = { exterior = [[-10, -10], [10, -10], [10, 10], [-10, 10]], \
                      holes = [[[-2, -2], [2, -2], [2, 2], [-2, 2]]] } }\n";
 
-/// Truth: the construction. A line across a hole gives a crack on both sides of it, with mouths in the corners made for them; keys of
-/// tips and guides mean the ends of the line.
+/// Truth: the construction. A line across a hole gives a crack on both sides of it, with mouths in the corners made for
+/// them; keys of tips and guides mean the ends of the line.
 #[test]
 fn a_crack_across_a_hole_is_its_pieces() {
     let crack = |line: &str, rest: &str| {

@@ -146,7 +146,8 @@ fn counts_are_bounded() {
     }
 }
 
-/// Truth: the header says how many pixels there are before any is decoded; a file that ends early, or is no file, says so.
+/// Truth: the header says how many pixels there are before any is decoded; a file that ends early, or is no file, says
+/// so.
 #[test]
 fn images_are_bounded_and_whole() {
     let folder = Folder::new(&format!("{PLATE}[[toughness]]\nimage = 'a.png'\n"), None);

@@ -93,7 +93,8 @@ fn what_the_frames_do_not_depend_on_may_change() {
     }
 }
 
-/// Whatever cannot go on is told and stays as it is; what was begun anew on purpose replaces what is of a take and no more.
+/// Whatever cannot go on is told and stays as it is; what was begun anew on purpose replaces what is of a take and no
+/// more.
 #[test]
 fn what_cannot_go_on_is_told_and_kept() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,7 +1,7 @@
 //! Every moment at which a take can be cut short. Truth: a run that nothing befell, byte for byte.
 //!
-//! A solver in miniature writes a take on a simulated disk: its state is the number of the frame. At each call of the system
-//! in turn the process dies, the power goes or the disk fills up; then the same session runs again.
+//! A solver in miniature writes a take on a simulated disk: its state is the number of the frame. At each call of the
+//! system in turn the process dies, the power goes or the disk fills up; then the same session runs again.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod common;
@@ -134,8 +134,8 @@ fn a_disk_that_fills_up_at_any_call_leaves_what_goes_on() {
     }
 }
 
-/// Beginning anew over a take that is there. Truth: the bytes of a take where there was none, and before that a folder that
-/// is refused, or goes on as one or the other take.
+/// Beginning anew over a take that is there. Truth: the bytes of a take where there was none, and before that a folder
+/// that is refused, or goes on as one or the other take.
 #[test]
 fn a_death_while_a_take_is_replaced_leaves_what_can_be_replaced() {
     let (scene, mut other) = (scene(), scene());

@@ -81,7 +81,8 @@ pub enum SimulationError {
 }
 
 impl SimulationError {
-    /// The key of the scene that is the cause, and another that it does not go together with. Paths count items as in the scene.
+    /// The key of the scene that is the cause, and another that it does not go together with. Paths count items as in
+    /// the scene.
     pub fn keys(&self) -> Vec<KeyPath> {
         match self {
             Self::Scene(fault) => std::iter::once(&fault.path).chain(&fault.other).cloned().collect(),

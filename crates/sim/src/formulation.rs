@@ -18,8 +18,8 @@ pub(crate) struct Choice {
     pub(crate) reason: String,
 }
 
-/// Expected strain above which small-strain scenes end. Glass, stone and hard plastics break at a hundredth of it or less; the total
-/// Lagrangian formulation itself stays exact well beyond.
+/// Expected strain above which small-strain scenes end. Glass, stone and hard plastics break at a hundredth of it or
+/// less; the total Lagrangian formulation itself stays exact well beyond.
 const SMALL_STRAIN: f64 = 0.1;
 
 /// Chooses the formulation of `scene`.
@@ -41,8 +41,8 @@ pub(crate) fn choose(scene: &Scene, elastic: &[Elastic]) -> Choice {
     chosen(Formulation::Total, format!("every material is elastic and strains of about {strain:.1e} are expected"))
 }
 
-/// The scene with the kernel its formulation needs: a bilinear one, the choice where particles never move through the grid, gives way to a smooth one
-/// where the updated formulation is used without the scene having asked for it.
+/// The scene with the kernel its formulation needs: a bilinear one, the choice where particles never move through the
+/// grid, gives way to a smooth one where the updated formulation is used without the scene having asked for it.
 pub(crate) fn settle(scene: &Scene, used: Formulation) -> Scene {
     let mut scene = scene.clone();
     let solver = &mut scene.solver;

@@ -1,4 +1,5 @@
-//! The solver: from a [`Scene`](fissure_scene::Scene) to [`Frame`](fissure_scene::Frame)s by the Material Point Method with explicit cracks.
+//! The solver: from a [`Scene`](fissure_scene::Scene) to [`Frame`](fissure_scene::Frame)s by the Material Point Method
+//! with explicit cracks.
 //!
 //! Touches no file and draws nothing. The same scene gives the same bytes for any number of threads.
 

@@ -33,7 +33,8 @@ pub(crate) struct Need {
     pub(crate) state: f64,
 }
 
-/// Rows of nodes beside an outline that no inner cell accounts for: what stencils reach beyond it, and what bands and spans hold besides.
+/// Rows of nodes beside an outline that no inner cell accounts for: what stencils reach beyond it, and what bands and
+/// spans hold besides.
 const ROWS_BESIDE_OUTLINE: f64 = 5.0;
 
 /// What the program takes without a scene [bytes]: `fissure run` on bodies of a few particles.
@@ -53,7 +54,8 @@ const STATES: f64 = 2.0;
 
 const MEBIBYTE: f64 = (1 << 20) as f64;
 
-/// Bytes of the particles at rest: places, positions, numbers of body and material, volume and mass, and the number of the fragment.
+/// Bytes of the particles at rest: places, positions, numbers of body and material, volume and mass, and the number of
+/// the fragment.
 const PARTICLE: usize = size_of::<[i32; 2]>() + size_of::<Point>() + 3 * size_of::<u32>() + 2 * size_of::<f64>();
 
 /// Bytes of a particle in a frame.
@@ -90,8 +92,8 @@ impl Amounts {
 /// Pieces of a crack, in cells, that get a box of their own when the cells around it are counted.
 const PIECE: f64 = 16.0;
 
-/// How many cells lie in boxes around the pieces of a segment that leave `reach` cells on all sides: more than the crack divides now, as much as its lists
-/// take while they are laid.
+/// How many cells lie in boxes around the pieces of a segment that leave `reach` cells on all sides: more than the
+/// crack divides now, as much as its lists take while they are laid.
 fn cells_around(a: Point, b: Point, cell_size: f64, reach: f64) -> f64 {
     let pieces = ((b - a).amin() / (PIECE * cell_size)).ceil().max(1.0);
     let along = (b - a).abs() / (cell_size * pieces);
@@ -153,8 +155,8 @@ fn fitting_spacing(scene: &Scene, formulation: Formulation, available: f64) -> O
     })
 }
 
-/// Memory that this process can still get [bytes]: what the machine has free, within the limits of its control group and of its address space. None where the
-/// system does not say.
+/// Memory that this process can still get [bytes]: what the machine has free, within the limits of its control group
+/// and of its address space. None where the system does not say.
 fn available() -> Option<u64> {
     let free = sysinfo::System::new().ok().and_then(|mut system| {
         system.refresh_memory();
@@ -164,11 +166,12 @@ fn available() -> Option<u64> {
     free.into_iter().chain(address_space()).min()
 }
 
-/// Address space that one thread takes besides what it computes: its stack, and the arena that the allocator of Linux gives it [bytes].
+/// Address space that one thread takes besides what it computes: its stack, and the arena that the allocator of Linux
+/// gives it [bytes].
 const THREAD: u64 = (2 + 64) << 20;
 
-/// What is left of the address space of this process [bytes] where `ulimit -v` limits it: without what it has mapped, and without
-/// the threads that are yet to come, which make meshes and draw the bar.
+/// What is left of the address space of this process [bytes] where `ulimit -v` limits it: without what it has mapped,
+/// and without the threads that are yet to come, which make meshes and draw the bar.
 #[cfg(unix)]
 fn address_space() -> Option<u64> {
     let limit = rustix::process::getrlimit(rustix::process::Resource::As).current?;

@@ -188,7 +188,8 @@ pub(crate) struct FirstMotion {
     pub(crate) angular_velocity: f64,
 }
 
-/// Spans of the particles in each row, numbered as they are. Of two particles in one place, where the outlines of bodies overlap by rounding, it holds the first.
+/// Spans of the particles in each row, numbered as they are. Of two particles in one place, where the outlines of
+/// bodies overlap by rounding, it holds the first.
 fn lattice_of(place: &[[i32; 2]]) -> SpanRows {
     let mut runs: Vec<(i32, Span)> = Vec::new();
     for (p, &[i, j]) in place.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! Saved states: compact bytes that give back the very same numbers, and checks of what is read back.
 //!
-//! The solvers index their arrays by numbers of a state, so a state that was tampered with, or is of another build, has to be
-//! looked through before it is used.
+//! The solvers index their arrays by numbers of a state, so a state that was tampered with, or is of another build, has
+//! to be looked through before it is used.
 
 use crate::SimulationError;
 use serde::Serialize;

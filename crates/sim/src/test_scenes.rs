@@ -12,8 +12,8 @@ pub(crate) fn rectangle(low: [f64; 2], high: [f64; 2]) -> Region {
     Region { exterior, holes: Vec::new() }
 }
 
-/// One body in the shape of `region`, of E = 1000 Pa, ν = 0.3, ρ = 1 kg/m³, in plane strain; nothing acts on it. Two particles per cell and
-/// axis, particle spacing `spacing` [m]; updated Lagrangian, cubic, PIC.
+/// One body in the shape of `region`, of E = 1000 Pa, ν = 0.3, ρ = 1 kg/m³, in plane strain; nothing acts on it. Two
+/// particles per cell and axis, particle spacing `spacing` [m]; updated Lagrangian, cubic, PIC.
 pub(crate) fn free_body(region: Region, spacing: f64) -> Scene {
     Scene {
         name: "test".into(),
@@ -94,7 +94,8 @@ pub(crate) fn add_body(scene: &mut Scene, away: [f64; 2]) {
     scene.bodies.push(body);
 }
 
-/// Gives the places in `selection` of the first body an initial velocity: `velocity` plus `angular_velocity` around `center`.
+/// Gives the places in `selection` of the first body an initial velocity: `velocity` plus `angular_velocity` around
+/// `center`.
 pub(crate) fn set_motion(
     scene: &mut Scene,
     selection: Selection,

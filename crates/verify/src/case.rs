@@ -7,10 +7,11 @@ use fissure_sim::SimulationError;
 /// How a case is run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Options {
-    /// Resolution, in cells per characteristic length of the case (its documentation says which); none: that of its targets.
+    /// Resolution, in cells per characteristic length of the case (its documentation says which); none: that of its
+    /// targets.
     pub cells: Option<f64>,
-    /// Measure at 16 places of the tip within a cell for every variant, where the case varies the place at all; without it only the
-    /// variants whose target says so get all 16, the others 4.
+    /// Measure at 16 places of the tip within a cell for every variant, where the case varies the place at all; without
+    /// it only the variants whose target says so get all 16, the others 4.
     pub all_offsets: bool,
 }
 

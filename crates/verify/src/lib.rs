@@ -1,7 +1,8 @@
 //! Problems with known solutions: the scene that computes each, and the numbers it should give.
 //!
-//! Promises: every reference number names where it comes from, and every scene is complete, so that a test, an example or a chart runs the very same
-//! problem. Does not promise that a scene meets its reference: that is for the report to say.
+//! Promises: every reference number names where it comes from, and every scene is complete, so that a test, an example
+//! or a chart runs the very same problem. Does not promise that a scene meets its reference: that is for the report to
+//! say.
 //!
 //! A [`Case`] is run with [`Options`] and gives a [`Report`] of [`Row`]s; [`text`] and [`markdown`] print it.
 //!

@@ -27,7 +27,8 @@ pub(crate) fn material(young_modulus: f64, poisson_ratio: f64, density: f64, fra
 /// Young's modulus of [`linear_material`] [Pa].
 pub(crate) const LINEAR_YOUNG: f64 = 1e9;
 
-/// A material for problems at rest, ν = 0.3: so stiff that stresses of some 1e3 Pa make strains of 1e-6, and the problem is linear. Never breaks.
+/// A material for problems at rest, ν = 0.3: so stiff that stresses of some 1e3 Pa make strains of 1e-6, and the
+/// problem is linear. Never breaks.
 pub(crate) fn linear_material() -> Material {
     material(LINEAR_YOUNG, 0.3, 1000.0, 1e30)
 }

@@ -116,8 +116,8 @@ impl<'a> Tally<'a> {
         self.steps += steps;
     }
 
-    /// Runs to the end of the frames; `sample` looks at the state after each step, and ends the run by breaking. It is also given the time to which what
-    /// was measured at the tips belongs [s]: the beginning of the step.
+    /// Runs to the end of the frames; `sample` looks at the state after each step, and ends the run by breaking. It is
+    /// also given the time to which what was measured at the tips belongs [s]: the beginning of the step.
     pub(crate) fn run(
         &mut self,
         simulation: &mut Simulation,

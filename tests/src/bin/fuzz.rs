@@ -1,10 +1,11 @@
-//! `fuzz TARGET COUNT SEED`: gives `COUNT` inputs of the sequence `SEED` to a target, each within limits of time and memory.
+//! `fuzz TARGET COUNT SEED`: gives `COUNT` inputs of the sequence `SEED` to a target, each within limits of time and
+//! memory.
 //!
-//! The inputs run in a child process. A panic is caught and told; when the child dies, of memory, of an abort, or because an input
-//! takes too long, the input is told and a new child goes on after it. Inputs at fault are written to `target/fuzz`. The last line
-//! counts; the exit code is 1 when anything was at fault. `fuzz TARGET SECONDS s SEED` runs for a time instead, and
-//! `fuzz --again TARGET SEED INDEX` runs one input once more. With `FUZZ_REFUSALS` set, the commonest refusals are listed, each with
-//! its number and the first input that gave it.
+//! The inputs run in a child process. A panic is caught and told; when the child dies, of memory, of an abort, or
+//! because an input takes too long, the input is told and a new child goes on after it. Inputs at fault are written to
+//! `target/fuzz`. The last line counts; the exit code is 1 when anything was at fault. `fuzz TARGET SECONDS s SEED`
+//! runs for a time instead, and `fuzz --again TARGET SEED INDEX` runs one input once more. With `FUZZ_REFUSALS` set,
+//! the commonest refusals are listed, each with its number and the first input that gave it.
 
 use cap::Cap;
 use fissure_tests::fuzz::{Bench, Target};
@@ -133,7 +134,8 @@ fn watch(campaign: &Campaign) -> std::io::Result<bool> {
     Ok(panics + aborts + late == 0)
 }
 
-/// A folder for temporary files: in memory where the system has one there, since a disk is slow to take a file for every input.
+/// A folder for temporary files: in memory where the system has one there, since a disk is slow to take a file for
+/// every input.
 fn working_folder() -> std::io::Result<TempDir> {
     tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir())
 }
@@ -164,7 +166,8 @@ impl Tally {
     }
 }
 
-/// Runs inputs from number `from` on. The number of the current one is always in the file `status`, what was done in the file beside it.
+/// Runs inputs from number `from` on. The number of the current one is always in the file `status`, what was done in
+/// the file beside it.
 fn child(campaign: &Campaign, from: u64, status: &Path) -> ExitCode {
     let bench = Bench::new();
     let beginning = Instant::now();

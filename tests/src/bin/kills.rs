@@ -1,11 +1,12 @@
-//! Ends the program in all ways at random moments, lets it go on, and holds what it wrote against a run that nothing befell.
+//! Ends the program in all ways at random moments, lets it go on, and holds what it wrote against a run that nothing
+//! befell.
 //!
 //! ```sh
 //! cargo build --release && cargo run --release -p fissure-tests --bin kills -- COUNT SEED
 //! ```
-//! Ways, in turn: SIGKILL in `run`, SIGKILL in `run` and again in the run that goes on, SIGKILL in `sim`, SIGINT, SIGTERM,
-//! SIGKILL in `run --overwrite` over another take, SIGKILL in `post`, and a limit on the length of files in place of a full
-//! disk. Prints how each ended and fails when a byte differs or an end has the wrong code. For Unix.
+//! Ways, in turn: SIGKILL in `run`, SIGKILL in `run` and again in the run that goes on, SIGKILL in `sim`, SIGINT,
+//! SIGTERM, SIGKILL in `run --overwrite` over another take, SIGKILL in `post`, and a limit on the length of files in
+//! place of a full disk. Prints how each ended and fails when a byte differs or an end has the wrong code. For Unix.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "what it finds is its result")]
 
 use rand_pcg::Pcg64;
@@ -139,7 +140,8 @@ impl Bench {
         Ok(command.spawn()?)
     }
 
-    /// Starts the program and sends it a signal at a random moment; returns whether that came in time, and the exit code.
+    /// Starts the program and sends it a signal at a random moment; returns whether that came in time, and the exit
+    /// code.
     fn end_within(&self, arguments: &[&str], signal: &str, random: &mut Pcg64) -> Outcome<(bool, Option<i32>)> {
         let mut child = self.start(arguments)?;
         std::thread::sleep(self.duration.mul_f64(1.1 * fraction(random)));
@@ -198,8 +200,8 @@ impl Bench {
         }
     }
 
-    /// Runs the program with a limit on the length of files [blocks of 1024 bytes], which it meets at a file that depends on
-    /// the limit.
+    /// Runs the program with a limit on the length of files [blocks of 1024 bytes], which it meets at a file that
+    /// depends on the limit.
     fn on_a_full_disk(&self, random: &mut Pcg64) -> Outcome<bool> {
         let limit = (2000.0 * fraction(random)) as u64;
         let command =

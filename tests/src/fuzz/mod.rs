@@ -1,8 +1,8 @@
 //! Hostile input: targets that take bytes, and generators that make inputs for them which are nearly right.
 //!
-//! Every target either accepts its input or says why not. A panic, an abort, or more time or memory than its limits is a mistake of
-//! the program. The binary `fuzz` runs new inputs, a test replays those in `tests/corpus`, and the crate in `fuzz/` lets a
-//! coverage-guided fuzzer choose them.
+//! Every target either accepts its input or says why not. A panic, an abort, or more time or memory than its limits is
+//! a mistake of the program. The binary `fuzz` runs new inputs, a test replays those in `tests/corpus`, and the crate
+//! in `fuzz/` lets a coverage-guided fuzzer choose them.
 
 mod drawing;
 mod image;

@@ -8,7 +8,8 @@ use rand_pcg::rand_core::{Rng, SeedableRng};
 pub struct Random(Pcg64);
 
 impl Random {
-    /// The choices of one input: `index` of the sequence `seed`. Inputs are independent, so that each can be made again alone.
+    /// The choices of one input: `index` of the sequence `seed`. Inputs are independent, so that each can be made again
+    /// alone.
     pub fn new(seed: u64, index: u64) -> Self {
         let mut bytes = [0; 32];
         bytes[..8].copy_from_slice(&seed.to_le_bytes());

@@ -13,9 +13,9 @@ pub struct CrackKeys {
     pub name: Option<String>,
     /// Body the crack runs in. Default: all it runs through.
     pub body: Option<String>,
-    /// Its line, open. Ends that stick out of the body are cut off at the outline; an end on the line of another crack opens into that one.
-    /// A line across holes, gaps or several bodies gives a crack for each piece in the material, `name.1`, `name.2`, ... from its first point
-    /// on, open where it meets an outline. Required.
+    /// Its line, open. Ends that stick out of the body are cut off at the outline; an end on the line of another crack
+    /// opens into that one. A line across holes, gaps or several bodies gives a crack for each piece in the material,
+    /// `name.1`, `name.2`, ... from its first point on, open where it meets an outline. Required.
     pub line: Line,
     /// Which ends may grow. Default: every end that lies inside the body and on no other crack.
     pub tips: Option<Tips>,
@@ -68,7 +68,8 @@ pub struct GuideKeys {
     pub keyframes: Vec<[f64; 2]>,
 }
 
-/// Small straight cracks scattered at random: the same seed gives the same flaws on every machine. Give `density` or `count`.
+/// Small straight cracks scattered at random: the same seed gives the same flaws on every machine. Give `density` or
+/// `count`.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FlawsKeys {
@@ -93,8 +94,8 @@ pub struct FlawsKeys {
     /// Direction in degrees, counter-clockwise from x. Default: with `angle_spread` 0, otherwise all directions.
     #[schemars(transform = DEGREES.bounds())]
     pub angle: Option<f64>,
-    /// Directions vary evenly by this much to either side of `angle`, in degrees. Default: with `angle` 0, otherwise 90: all
-    /// directions.
+    /// Directions vary evenly by this much to either side of `angle`, in degrees. Default: with `angle` 0, otherwise
+    /// 90: all directions.
     #[schemars(transform = DEGREES_APART.bounds())]
     pub angle_spread: Option<f64>,
     /// Number that stands for one arrangement. Default: 0.

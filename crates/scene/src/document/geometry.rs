@@ -91,7 +91,8 @@ pub enum Shape {
     Circle(CircleKeys),
     /// Polygon: its corners `[[x, y], ...]` in m, or `{ exterior = [...], holes = [[...], ...] }`.
     Polygon(PolygonKeys),
-    /// Element of the drawing, by id or label: a path, a basic shape, a text, or a group of them; "*" is all that is drawn.
+    /// Element of the drawing, by id or label: a path, a basic shape, a text, or a group of them; "*" is all that is
+    /// drawn.
     Svg(String),
 }
 

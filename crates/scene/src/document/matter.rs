@@ -72,7 +72,8 @@ pub struct MaterialKeys {
     pub plasticity: Option<Switch<PlasticityValues>>,
 }
 
-/// A factor on the fracture toughness: over a `shape` (with `factor`), or painted (an `image`). Where several apply they multiply.
+/// A factor on the fracture toughness: over a `shape` (with `factor`), or painted (an `image`). Where several apply
+/// they multiply.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ToughnessKeys {
@@ -83,8 +84,8 @@ pub struct ToughnessKeys {
     /// Factor on the fracture toughness inside `shape`, above 0.
     #[schemars(transform = TOUGHNESS_FACTOR.bounds())]
     pub factor: Option<f64>,
-    /// PNG, relative to the scene file, that paints the factor in shades of grey. Colours count by their luminance, what is
-    /// transparent counts as white. Detail finer than the particle spacing is averaged.
+    /// PNG, relative to the scene file, that paints the factor in shades of grey. Colours count by their luminance,
+    /// what is transparent counts as white. Detail finer than the particle spacing is averaged.
     pub image: Option<PathBuf>,
     /// Factor where the image is black, above 0. Default: 0.2.
     #[schemars(transform = TOUGHNESS_FACTOR.bounds())]

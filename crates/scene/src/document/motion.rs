@@ -102,20 +102,20 @@ pub struct Keyframe {
     pub angle: f64,
 }
 
-/// Which material is meant. Without any key: everything. `body` alone: that body; `edge` and a drawn line may be combined
-/// with `body`. The name of a body of several parts means all of them, `name.1` one part.
+/// Which material is meant. Without any key: everything. `body` alone: that body; `edge` and a drawn line may be
+/// combined with `body`. The name of a body of several parts means all of them, `name.1` one part.
 #[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Select {
-    /// The layer of particles along one side of the bodies' bounding box: `left`, `right`, `bottom` or `top`. Of a body of
-    /// several parts that is the box around all of them: the layer is of the parts that reach that side.
+    /// The layer of particles along one side of the bodies' bounding box: `left`, `right`, `bottom` or `top`. Of a body
+    /// of several parts that is the box around all of them: the layer is of the parts that reach that side.
     pub edge: Option<BoxSide>,
     /// Name of a body.
     pub body: Option<String>,
     /// Material inside a shape (its edges included).
     pub region: Option<Shape>,
-    /// Element of the drawing, by id. An open line selects the layer of particles along the edge it is drawn on, not farther
-    /// than a particle spacing from it; a closed shape selects the material inside it.
+    /// Element of the drawing, by id. An open line selects the layer of particles along the edge it is drawn on, not
+    /// farther than a particle spacing from it; a closed shape selects the material inside it.
     pub svg: Option<String>,
     /// Material within `radius` of these points [[x, y], ...] in m.
     #[schemars(transform = COORDINATE.bounds())]
@@ -135,7 +135,8 @@ pub struct LoadKeys {
     /// Total force [x, y] per metre of thickness in N/m, shared among all the selected material by its volume.
     #[schemars(transform = FORCE.bounds())]
     pub force: Option<[f64; 2]>,
-    /// Force per area [x, y] in Pa on the selected edge; needs `select = { edge = ... }` or an open line of the drawing.
+    /// Force per area [x, y] in Pa on the selected edge; needs `select = { edge = ... }` or an open line of the
+    /// drawing.
     #[schemars(transform = TRACTION.bounds())]
     pub traction: Option<[f64; 2]>,
     /// Forces on single particles.
@@ -173,7 +174,8 @@ pub struct SupportKeys {
     /// Velocity along y in m/s; without it the material is free along y.
     #[schemars(transform = VELOCITY.bounds())]
     pub velocity_y: Option<f64>,
-    /// Factor on the velocity over time, [[time in s, factor], ...] with rising times, linear between. Default: always 1.
+    /// Factor on the velocity over time, [[time in s, factor], ...] with rising times, linear between. Default: always
+    /// 1.
     #[serde(default)]
     #[schemars(transform = pairs(TIME, CURVE_FACTOR))]
     pub curve: Vec<[f64; 2]>,

@@ -55,7 +55,8 @@ pub struct SolverKeys {
     pub tip_division: Option<TipDivision>,
     /// How the energy release rate is measured: `contour` or `domain`.
     pub j_method: Option<JMethod>,
-    /// Radius of the contour or domain, in cells. Default: four cells, or 3/8 of the way to the nearest edge, kink or other crack, but at most six.
+    /// Radius of the contour or domain, in cells. Default: four cells, or 3/8 of the way to the nearest edge, kink or
+    /// other crack, but at most six.
     #[schemars(transform = CELLS.bounds())]
     pub j_radius: Option<f64>,
     /// Whether the dynamic area term is added to the energy release rate.
@@ -118,7 +119,8 @@ pub struct GrowthKeys {
     /// Length of one increment, in cells: how far a tip goes before it looks for its direction again.
     #[schemars(transform = CELLS.bounds())]
     pub increment: Option<f64>,
-    /// How much cracks bend: 0 straight on, 1 physical (default), above 1 exaggerated. Changes the direction only, never the moment.
+    /// How much cracks bend: 0 straight on, 1 physical (default), above 1 exaggerated. Changes the direction only,
+    /// never the moment.
     #[schemars(transform = BENDING.bounds())]
     pub bending: Option<f64>,
     /// Highest speed of a tip as a fraction of the Rayleigh wave speed, above 0 up to 1.

@@ -10,8 +10,8 @@ const CORNER: f64 = 0.5;
 /// Stretches shorter than this, in tolerances, are rounding at an end of the line.
 const SHORTEST: f64 = 1e-3;
 
-/// The stretches of the rings of `region` that run along `line`: not farther than `tolerance` [m] from it, beside one of its
-/// pieces, and turned from that by less than 45°. In the order of the rings, the material to their left.
+/// The stretches of the rings of `region` that run along `line`: not farther than `tolerance` [m] from it, beside one
+/// of its pieces, and turned from that by less than 45°. In the order of the rings, the material to their left.
 pub(crate) fn stretches_along(line: &[Point], region: &Region, body: usize, tolerance: f64) -> Vec<OutlineStretch> {
     let mut stretches = Vec::new();
     for ring in region.rings() {
@@ -98,8 +98,8 @@ mod tests {
     }
 
     proptest! {
-        /// Truth: the construction. A line from one place of the outline of an L to another, drawn off it by less than the
-        /// tolerance, selects the way along the outline between the two, whatever the turn.
+        /// Truth: the construction. A line from one place of the outline of an L to another, drawn off it by less than
+        /// the tolerance, selects the way along the outline between the two, whatever the turn.
         #[test]
         fn a_line_on_the_outline_selects_what_it_is_drawn_on(
             start in 0.1_f64..0.9, end in 0.1_f64..0.9, first in 0_usize..6, corners in 0_usize..4, off in -0.005_f64..0.005,

@@ -8,8 +8,8 @@ use toml::Value;
 /// The schema, made once: making it takes longer than reading a scene.
 static SCHEMA: LazyLock<serde_json::Value> = LazyLock::new(schema);
 
-/// Turns the message of the deserializer into ours, and into what to do. `path`: where it happened; for an unknown key it gets to point at the key.
-/// `file`: everything that was written.
+/// Turns the message of the deserializer into ours, and into what to do. `path`: where it happened; for an unknown key
+/// it gets to point at the key. `file`: everything that was written.
 pub(super) fn explain(message: &str, path: &mut KeyPath, file: &Value) -> (String, String) {
     let message = message.trim();
     let mut quoted = message.split('`').skip(1).step_by(2);

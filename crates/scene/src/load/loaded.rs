@@ -25,8 +25,8 @@ impl Loaded {
         self.warnings.extend(warnings.into_iter().map(in_file));
     }
 
-    /// A path that counts items as in the scene, as one that counts them as in the file: a drawing of several outlines makes several bodies of
-    /// one `[[body]]`, and flaws are cracks without a `[[crack]]` of their own.
+    /// A path that counts items as in the scene, as one that counts them as in the file: a drawing of several outlines
+    /// makes several bodies of one `[[body]]`, and flaws are cracks without a `[[crack]]` of their own.
     pub fn in_file(&self, path: KeyPath) -> KeyPath {
         self.origin.in_file(path)
     }

@@ -50,7 +50,8 @@ pub fn load_with_warnings(path: &Path, overrides: &[String]) -> Result<Loaded, L
     load_text(path, SCENE_FILE.read_text(path)?, overrides, |file| folder.join(file))
 }
 
-/// As [`load_with_warnings`], of the `text` of a scene file that is or would be at `path`; `locate` finds the files it names.
+/// As [`load_with_warnings`], of the `text` of a scene file that is or would be at `path`; `locate` finds the files it
+/// names.
 fn load_text(
     path: &Path,
     text: String,

@@ -24,7 +24,8 @@ pub(crate) struct Budget {
 }
 
 impl Budget {
-    /// Pixels of all images: two of 4096 x 4096. A picture takes 8 bytes for each, and about three times as much on its way there.
+    /// Pixels of all images: two of 4096 x 4096. A picture takes 8 bytes for each, and about three times as much on its
+    /// way there.
     const PIXELS: u64 = 1 << 25;
     /// Pixels of one image.
     const PIXELS_OF_ONE: u64 = 1 << 24;
@@ -61,8 +62,8 @@ impl Picture {
         Ok(Self { columns, rows: light.len() / columns, light })
     }
 
-    /// Light of the picture with at most `columns` × `rows` pixels (each at least 1): means over the larger pixels. Gives
-    /// columns, rows and light.
+    /// Light of the picture with at most `columns` × `rows` pixels (each at least 1): means over the larger pixels.
+    /// Gives columns, rows and light.
     pub(crate) fn averaged(&self, columns: usize, rows: usize) -> (usize, usize, Vec<f64>) {
         let (columns, rows) = (columns.min(self.columns), rows.min(self.rows));
         let narrow = means(&self.light, self.columns, columns);

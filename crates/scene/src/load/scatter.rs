@@ -42,9 +42,9 @@ const MOST_COMPARISONS: usize = 500_000_000;
 
 /// Throws darts until there are as many flaws as asked for, or none fits any more.
 ///
-/// Centres lie in one of `regions` and, if given, in one of `within`; flaws keep their margin from the rings of `regions`, from `lines` and
-/// from each other. A larger count gives the same flaws and more. Nothing here depends on the machine: integers and IEEE arithmetic, sine and
-/// cosine from a library of its own.
+/// Centres lie in one of `regions` and, if given, in one of `within`; flaws keep their margin from the rings of
+/// `regions`, from `lines` and from each other. A larger count gives the same flaws and more. Nothing here depends on
+/// the machine: integers and IEEE arithmetic, sine and cosine from a library of its own.
 pub(crate) fn scatter(flaws: &Flaws, regions: &[&Region], within: Option<&[Region]>, lines: &[&[Point]]) -> Vec<Flaw> {
     let mut random = Random::new(flaws.seed, flaws.stream);
     let target: Vec<&Region> = within.map_or_else(|| regions.to_vec(), |shapes| shapes.iter().collect());
@@ -134,7 +134,8 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
-        /// Truth: brute force. Points along each flaw keep the margin from points along everything else, less what sampling misses.
+        /// Truth: brute force. Points along each flaw keep the margin from points along everything else, less what
+        /// sampling misses.
         #[test]
         fn flaws_keep_their_distance(seed in any::<u64>(), margin in 0.05_f64..0.3, angle in -3.0_f64..3.0, spread in 0.0_f64..0.3) {
             let bodies = bodies();
@@ -178,7 +179,8 @@ mod tests {
         }
     }
 
-    /// Truth: the same darts in Python (hashlib, PCG64 from its paper, math.sin), to all digits: every machine gives these.
+    /// Truth: the same darts in Python (hashlib, PCG64 from its paper, math.sin), to all digits: every machine gives
+    /// these.
     #[test]
     fn arrangements_never_change() {
         let bodies = bodies();
@@ -190,7 +192,8 @@ mod tests {
         assert_eq!(ends, [first, second].concat());
     }
 
-    /// Truth: flaws along x in a strip one margin and a half wide lie end to end, so no more than strip / (length + margin) fit.
+    /// Truth: flaws along x in a strip one margin and a half wide lie end to end, so no more than strip / (length +
+    /// margin) fit.
     #[test]
     fn a_full_strip_ends_the_search() {
         let strip = Region { exterior: points(&[[0.0, 0.0], [7.0, 0.0], [7.0, 0.25], [0.0, 0.25]]), holes: Vec::new() };

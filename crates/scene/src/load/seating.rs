@@ -22,10 +22,11 @@ pub(crate) struct Seated {
     pub(crate) from: f64,
 }
 
-/// The pieces of a drawn crack in the material of a body, in order: one, or several where it runs across holes or out and in again.
+/// The pieces of a drawn crack in the material of a body, in order: one, or several where it runs across holes or out
+/// and in again.
 ///
-/// Ends of the line within `tolerance` [m] of a ring are moved onto it, and each mouth becomes a corner of its ring, so that both are
-/// the same point to the bit. Pieces not longer than the tolerance are left out.
+/// Ends of the line within `tolerance` [m] of a ring are moved onto it, and each mouth becomes a corner of its ring, so
+/// that both are the same point to the bit. Pieces not longer than the tolerance are left out.
 pub(crate) fn seat_crack(line: &[Point], region: &mut Region, tolerance: f64) -> Vec<Seated> {
     let mut line = line.to_vec();
     for _ in 0..2 {
@@ -52,8 +53,8 @@ pub(crate) fn seat_crack(line: &[Point], region: &mut Region, tolerance: f64) ->
     pieces
 }
 
-/// Parts two pieces of a line that only touches a ring, in the corner where the one ends and the next begins: one of them gets a mouth of
-/// its own, a little along the edge beside it.
+/// Parts two pieces of a line that only touches a ring, in the corner where the one ends and the next begins: one of
+/// them gets a mouth of its own, a little along the edge beside it.
 fn part_mouths(region: &mut Region, before: &mut [Point], after: &mut [Point], tolerance: f64) {
     let corner = after[0];
     let found = region.rings().enumerate().find_map(|(r, ring)| Some((r, ring.iter().position(|&p| p == corner)?)));
@@ -65,7 +66,8 @@ fn part_mouths(region: &mut Region, before: &mut [Point], after: &mut [Point], t
         (from.x * to.y - from.y * to.x).atan2(from.dot(&to)).rem_euclid(std::f64::consts::TAU)
     };
     let (arm_before, arm_after) = (before[before.len() - 2] - corner, after[1] - corner);
-    // The material lies counter-clockwise of the edge after the corner, as far as the one before it: each piece is beside one of them.
+    // The material lies counter-clockwise of the edge after the corner, as far as the one before it: each piece is
+    // beside one of them.
     let before_is_first = turn(next, arm_before) < turn(next, arm_after);
     let (first, second) = if before_is_first { (arm_before, arm_after) } else { (arm_after, arm_before) };
     // The smaller angle is below half a turn, so that nothing is in the way.
@@ -79,8 +81,9 @@ fn part_mouths(region: &mut Region, before: &mut [Point], after: &mut [Point], t
     }
 }
 
-/// Moves ends within `tolerance` of another crack of the same body onto it, and makes each such place a vertex of that crack, so that both are the same
-/// point to the bit. `bodies`: of each crack. Ends that meet ends stay as they are drawn.
+/// Moves ends within `tolerance` of another crack of the same body onto it, and makes each such place a vertex of that
+/// crack, so that both are the same point to the bit. `bodies`: of each crack. Ends that meet ends stay as they are
+/// drawn.
 pub(crate) fn seat_on_cracks(cracks: &mut [Seated], bodies: &[usize], tolerance: f64) {
     for guest in 0..cracks.len() {
         for end in 0..2 {
@@ -218,7 +221,8 @@ mod tests {
         );
     }
 
-    /// Truth: the construction. The bar of a T, drawn a little short of the trunk and a little beyond it, ends on a vertex of the trunk to the bit.
+    /// Truth: the construction. The bar of a T, drawn a little short of the trunk and a little beyond it, ends on a
+    /// vertex of the trunk to the bit.
     #[test]
     fn the_bar_of_a_t_ends_on_its_trunk() {
         for short in [0.01, 0.0, -0.01] {
@@ -238,7 +242,8 @@ mod tests {
     }
 
     proptest! {
-        /// Truth: a mouth is a corner of the ring to the bit, the region keeps its area, and what is left of the crack is inside.
+        /// Truth: a mouth is a corner of the ring to the bit, the region keeps its area, and what is left of the crack
+        /// is inside.
         #[test]
         fn mouths_become_corners(x in 1.5_f64..3.0, y in -0.9_f64..0.9, tip in -0.5_f64..0.5) {
             let mut region = square();
@@ -250,8 +255,9 @@ mod tests {
             prop_assert!(crate::validate::leaves(&region, &seated.points).is_none());
         }
 
-        /// Truth: what a crack must be, as the validation has it. However a line runs over holes, along edges and through corners,
-        /// at any turn, each piece is inside with its mouths on corners of the rings, apart from the others, and the region keeps its area.
+        /// Truth: what a crack must be, as the validation has it. However a line runs over holes, along edges and
+        /// through corners, at any turn, each piece is inside with its mouths on corners of the rings, apart from the
+        /// others, and the region keeps its area.
         #[test]
         fn pieces_are_sound_cracks(line in prop::collection::vec(split::place(), 2..4), angle in prop_oneof![Just(0.0), -3.0_f64..3.0],
                                    mirrored in any::<bool>()) {
@@ -260,7 +266,8 @@ mod tests {
             let line = split::placed(&line, angle, mirrored);
             prop_assume!(line.windows(2).all(|w| (w[1] - w[0]).norm() > 0.1));
             prop_assume!(fissure_plane::find_crossing(&[&line], false).is_none());
-            // Nor does anybody draw a needle as wide as what is moved onto a ring; the validation says where its sides meet.
+            // Nor does anybody draw a needle as wide as what is moved onto a ring; the validation says where its sides
+            // meet.
             let is_needle = |w: &[Point]| {
                 let (there, back) = (w[1] - w[0], w[2] - w[1]);
                 there.dot(&back) < 0.0 && there.perp(&back).abs() < 0.1 * there.norm() * back.norm()

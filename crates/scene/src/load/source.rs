@@ -61,7 +61,8 @@ impl SceneSource {
         })
     }
 
-    /// Everything that is written, overrides included, for messages: parsed anew, so that a sound scene does not keep it twice.
+    /// Everything that is written, overrides included, for messages: parsed anew, so that a sound scene does not keep
+    /// it twice.
     fn written(&self) -> toml::Value {
         let mut table: toml::Table = toml::from_str(&self.text).unwrap_or_default();
         // They went in without complaint before.
@@ -69,7 +70,8 @@ impl SceneSource {
         toml::Value::Table(table)
     }
 
-    /// Where `path` is written: file or override, its text, and the bytes meant. The deepest part that is written counts.
+    /// Where `path` is written: file or override, its text, and the bytes meant. The deepest part that is written
+    /// counts.
     pub(crate) fn locate(&self, path: &KeyPath) -> Place {
         let set = self.overrides.iter().rev().find(|(set, _)| {
             let common = set.0.len().min(path.0.len());

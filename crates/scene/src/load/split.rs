@@ -22,8 +22,8 @@ struct Meeting {
 
 /// The pieces of `line` in the material of `region`, in order. What runs along a ring is outside.
 ///
-/// What comes nearer to a ring than `weld` [m] touches it, so that it does not depend on rounding whether a line touches a corner
-/// or runs along an edge. Pieces not longer than `shortest` [m] are left out.
+/// What comes nearer to a ring than `weld` [m] touches it, so that it does not depend on rounding whether a line
+/// touches a corner or runs along an edge. Pieces not longer than `shortest` [m] are left out.
 pub(crate) fn pieces_inside(line: &[Point], region: &Region, weld: f64, shortest: f64) -> Vec<Piece> {
     let lengths = lengths_before(line);
     let Some(&whole) = lengths.last() else { return Vec::new() };
@@ -185,8 +185,8 @@ pub(crate) mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(400))]
-        /// Truth: brute force. The pieces are as long as the part of the line whose sampled places lie inside and off the
-        /// rings, their middles lie inside, and every end that is no end of the line lies on a ring.
+        /// Truth: brute force. The pieces are as long as the part of the line whose sampled places lie inside and off
+        /// the rings, their middles lie inside, and every end that is no end of the line lies on a ring.
         #[test]
         fn pieces_are_what_lies_inside(line in prop::collection::vec(place(), 2..5), angle in prop_oneof![Just(0.0), Just(PI / 2.0), -PI..PI],
                                        mirrored in any::<bool>(), backwards in any::<bool>()) {

@@ -1,5 +1,5 @@
-//! `frames.jsonl`: the frames there are, one line each. Lines are only ever added; one is added when its frame is on the
-//! disk, so that whatever is listed is there.
+//! `frames.jsonl`: the frames there are, one line each. Lines are only ever added; one is added when its frame is on
+//! the disk, so that whatever is listed is there.
 
 use super::TakeError;
 use super::sealed::{LINE, sha256};

@@ -59,8 +59,8 @@ impl Manifest {
         }
     }
 
-    /// Whether the folder holds a manifest of a take, of whatever version and however damaged. None: it holds no manifest,
-    /// or an empty file, in which there is nothing to lose.
+    /// Whether the folder holds a manifest of a take, of whatever version and however damaged. None: it holds no
+    /// manifest, or an empty file, in which there is nothing to lose.
     pub(super) fn is_there(folder: &Folder) -> Result<Option<bool>, TakeError> {
         let bytes = folder.read(NAME)?.filter(|bytes| !bytes.is_empty());
         let says_so = |bytes: Vec<u8>| {

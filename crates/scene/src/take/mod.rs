@@ -2,16 +2,16 @@
 //!
 //! ```text
 //! take/manifest.json            format, version, tool, seed, the whole resolved scene; written once
-//! take/frames.jsonl             one line per frame: number, time, files and table rows with their checksums; only appended to
+//! take/frames.jsonl             a line per frame: number, time, files and table rows with their checksums; grows only
 //! take/frame.0001.safetensors   one frame; names and shapes of its tensors: see `tensors`
 //! take/tips.csv                 one row per crack tip and frame
 //! take/energy.csv               one row per frame
 //! take/state.bin                the solver's state at some frame, to go on from
 //! ```
-//! A frame is in the take when its line is in the list, and its line is added only when its file is on the disk. So a take
-//! is sound at every moment, for readers too, and [`TakeWriter::open`] goes on from whatever a death has left: `opening`
-//! says how. Each byte is under some checksum: `sealed` for the two JSON files, the list for frames and tables, its own
-//! for the state. Writing n frames writes O(n) bytes.
+//! A frame is in the take when its line is in the list, and its line is added only when its file is on the disk. So a
+//! take is sound at every moment, for readers too, and [`TakeWriter::open`] goes on from whatever a death has left:
+//! `opening` says how. Each byte is under some checksum: `sealed` for the two JSON files, the list for frames and
+//! tables, its own for the state. Writing n frames writes O(n) bytes.
 //!
 //! Equal frames give equal bytes; nothing in a take depends on the time of day.
 

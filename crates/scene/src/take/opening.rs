@@ -6,7 +6,7 @@
 //! | something else's files | error, nothing is touched |
 //! | another scene, another version of the program with frames still to come | error, nothing is touched |
 //! | all frames that are wanted | nothing is left to do |
-//! | a saved state | the solver goes on with its frame; those that are there from it on are computed again and compared |
+//! | a saved state | the solver goes on with its frame; those from it on are computed again and compared |
 //! | no saved state yet, or a frame whose file is missing | as from the first frame; what is there is compared |
 //! | a saved state that is damaged, or of a frame that is not there | error, nothing is touched |
 //! | a last line of the list that was not written to its end | it goes |
@@ -76,12 +76,12 @@ impl fmt::Display for Remark {
 }
 
 impl TakeWriter {
-    /// Opens the take of `scene` in `folder` to write the frames up to `last`: goes on with what is there, or begins it.
-    /// For who is the only one to write to the folder; see [`fissure_files::Lock`].
+    /// Opens the take of `scene` in `folder` to write the frames up to `last`: goes on with what is there, or begins
+    /// it. For who is the only one to write to the folder; see [`fissure_files::Lock`].
     ///
     /// # Errors
-    /// When the folder holds something that is no take or cannot go on as it is; nothing has been touched then. When the
-    /// folder cannot be written.
+    /// When the folder holds something that is no take or cannot go on as it is; nothing has been touched then. When
+    /// the folder cannot be written.
     pub fn open(folder: &Folder, scene: &Scene, provenance: Provenance, last: i64) -> Result<Opened, TakeError> {
         if Manifest::is_there(folder)?.is_none() {
             let writer = Self::begin(folder, scene, provenance)?;

@@ -1,5 +1,5 @@
-//! `tips.csv` and `energy.csv`: what people plot. They hold nothing that is not in the frames, and are written anew from
-//! these where they are torn or changed.
+//! `tips.csv` and `energy.csv`: what people plot. They hold nothing that is not in the frames, and are written anew
+//! from these where they are torn or changed.
 
 use super::list::{FileEntry, FrameEntry};
 use super::{TakeError, read};
@@ -44,8 +44,8 @@ impl Table {
         Some(text.len() - rest.len())
     }
 
-    /// Brings the table to the frames that are listed: rows of later ones go, and where it is not as it was written all of
-    /// it is made anew from the frames. Returns whether that was so.
+    /// Brings the table to the frames that are listed: rows of later ones go, and where it is not as it was written all
+    /// of it is made anew from the frames. Returns whether that was so.
     fn repair(self, folder: &Folder, entries: &[FrameEntry]) -> Result<bool, TakeError> {
         let text = folder.read(self.name)?.unwrap_or_default();
         match self.sound_length(&text, entries) {

@@ -1,7 +1,7 @@
 //! A frame as safetensors: what each tensor is called, its shape and type.
 //!
-//! `n` particles; `k` rings with `m` points in all, `offset[i]..offset[i + 1]` those of ring `i`; likewise cracks; `t` tips;
-//! `c` colliders. Numbers are little-endian, matrices row by row.
+//! `n` particles; `k` rings with `m` points in all, `offset[i]..offset[i + 1]` those of ring `i`; likewise cracks; `t`
+//! tips; `c` colliders. Numbers are little-endian, matrices row by row.
 //!
 //! | tensor | shape, type | |
 //! |---|---|---|
@@ -216,8 +216,8 @@ pub fn frame_to_bytes(frame: &Frame) -> Result<Vec<u8>, String> {
     serialize(t.0.iter().map(|(name, tensor)| (name.as_str(), tensor)), Some(about)).map_err(|e| e.to_string())
 }
 
-/// Whether the bytes say that they are a frame, whole or not: the first entry of the header of a safetensors file is what
-/// the file is.
+/// Whether the bytes say that they are a frame, whole or not: the first entry of the header of a safetensors file is
+/// what the file is.
 pub(super) fn is_frame(bytes: &[u8]) -> bool {
     let start = format!("{{\"__metadata__\":{{\"format\":\"{FORMAT}\"");
     bytes.get(8..).is_some_and(|header| header.starts_with(start.as_bytes()))

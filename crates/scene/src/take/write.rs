@@ -16,7 +16,8 @@ pub struct TakeWriter {
 
 impl TakeWriter {
     /// Begins the take of `scene` in `folder` anew: the take that is there goes, whatever its scene, version and state.
-    /// What goes are the files that every take has and the frames, which say themselves what they are; other files stay.
+    /// What goes are the files that every take has and the frames, which say themselves what they are; other files
+    /// stay.
     ///
     /// # Errors
     /// When the folder holds something that is no take, or cannot be written.
@@ -44,8 +45,8 @@ impl TakeWriter {
 
     /// Begins a take where there is none.
     pub(super) fn begin(folder: &Folder, scene: &Scene, provenance: Provenance) -> Result<Self, TakeError> {
-        // What has no manifest is no take: a file under one of our names is somebody else's, unless there is nothing in it
-        // but what a death in the middle of these lines leaves.
+        // What has no manifest is no take: a file under one of our names is somebody else's, unless there is nothing in
+        // it but what a death in the middle of these lines leaves.
         for name in tables::TABLES.iter().map(|table| table.name).chain([list::NAME, state::NAME]) {
             if folder.read(name)?.is_some_and(|bytes| !bytes.is_empty() && !tables::is_fresh(&bytes)) {
                 return Err(TakeError::Foreign { path: folder.place(name)? });
@@ -69,11 +70,12 @@ impl TakeWriter {
     /// Writes a frame, its rows of the tables, and the line that lists it; when this returns it outlives a power cut. A
     /// frame that is listed already has to be the same.
     ///
-    /// `state`: that of the solver at this frame, for [`TakeWriter::open`]. It is on the disk before the frame is listed, so
-    /// that a take with all its frames has its last state, too.
+    /// `state`: that of the solver at this frame, for [`TakeWriter::open`]. It is on the disk before the frame is
+    /// listed, so that a take with all its frames has its last state, too.
     ///
     /// # Errors
-    /// When the folder cannot be written; the frames so far stay readable. When the frame is not the one that is listed.
+    /// When the folder cannot be written; the frames so far stay readable. When the frame is not the one that is
+    /// listed.
     pub fn write_frame(&mut self, frame: &Frame, state: Option<&[u8]>) -> Result<(), TakeError> {
         let bytes = frame_to_bytes(frame).map_err(|cause| TakeError::BadFrame { number: frame.number, cause })?;
         let name = list::file_name(frame.number);

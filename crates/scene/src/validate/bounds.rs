@@ -5,7 +5,8 @@ use schemars::Schema;
 use schemars::transform::Transform;
 use serde_json::{Map, Value, json};
 
-/// Puts a range on the numbers of a key: on the number itself, on both components of a point, on those of all points of a list.
+/// Puts a range on the numbers of a key: on the number itself, on both components of a point, on those of all points of
+/// a list.
 pub(crate) struct Bounds(Range);
 
 /// Puts two ranges on the numbers of pairs: on what a curve goes over, and on its values.

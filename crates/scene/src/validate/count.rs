@@ -1,4 +1,5 @@
-//! How many of each thing a scene may have. Beyond these numbers a count is a slip of the pen, or an attack on the machine's memory.
+//! How many of each thing a scene may have. Beyond these numbers a count is a slip of the pen, or an attack on the
+//! machine's memory.
 
 use super::Check;
 use crate::fault::{KeyPath, SceneFault, short};

@@ -184,7 +184,8 @@ fn is_inside(line: &[Point], point: Point) -> bool {
     line.len() > 2 && line[1..line.len() - 1].contains(&point)
 }
 
-/// Whether the piece `v` of `guest` ends the line, on a vertex inside `trunk` that its piece `w` has, and runs off to the side from there.
+/// Whether the piece `v` of `guest` ends the line, on a vertex inside `trunk` that its piece `w` has, and runs off to
+/// the side from there.
 fn joined(guest: &[Point], v: &[Point], trunk: &[Point], w: &[Point]) -> bool {
     let (first, last) = (guest[0], guest[guest.len() - 1]);
     [(first, v[0], v[1]), (last, v[1], v[0])].into_iter().any(|(end, own, inner)| {

@@ -43,7 +43,8 @@ pub(crate) fn enough_corners(path: &KeyPath, polygon: &PolygonKeys) -> Check {
 
 impl Scene {
     /// Checks that every number is finite and in its range, every index exists, and the geometry is simple, oriented
-    /// and inside of what it belongs to. [`crate::load`] gives scenes that pass; scenes made in code should call it too.
+    /// and inside of what it belongs to. [`crate::load`] gives scenes that pass; scenes made in code should call it
+    /// too.
     ///
     /// Paths of faults count items as in this scene.
     ///

@@ -3,7 +3,8 @@
 use super::Check;
 use crate::fault::{KeyPath, SceneFault};
 
-/// Most bytes of a name: with frame number, part and extension a file name stays far below the 255 of common file systems.
+/// Most bytes of a name: with frame number, part and extension a file name stays far below the 255 of common file
+/// systems.
 const MOST_BYTES: usize = 120;
 /// Characters that some system does not take in file names, or takes for a way into another folder.
 const FORBIDDEN: [char; 9] = ['/', '\\', ':', '*', '?', '"', '<', '>', '|'];

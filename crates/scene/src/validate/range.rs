@@ -1,7 +1,9 @@
-//! The ranges that numbers of a scene may have. Each is written here, once: checks, messages and the schema come from this table.
+//! The ranges that numbers of a scene may have. Each is written here, once: checks, messages and the schema come from
+//! this table.
 //!
-//! They are wide: from a grain of a micrometre to a mountain, from nanoseconds to years, from snow to diamond and beyond. What lies
-//! outside is a slip of the pen (a wrong unit, a digit too many), and would overflow somewhere behind.
+//! They are wide: from a grain of a micrometre to a mountain, from nanoseconds to years, from snow to diamond and
+//! beyond. What lies outside is a slip of the pen (a wrong unit, a digit too many), and would overflow somewhere
+//! behind.
 
 use super::Check;
 use crate::fault::{KeyPath, SceneFault};

@@ -11,7 +11,8 @@ use crate::settings::Branching;
 
 /// Most particles along the larger side of a body: beyond it a spacing is a slip of the pen.
 const MOST_ALONG_A_SIDE: f64 = 1e5;
-/// Most particle spacings along the larger side of the box around all bodies: places on the particle lattice are counted by integers of 32 bits.
+/// Most particle spacings along the larger side of the box around all bodies: places on the particle lattice are
+/// counted by integers of 32 bits.
 const MOST_ALONG_THE_SCENE: f64 = 1e9;
 /// Steps of single precision that a particle spacing must have: with fewer, the rounding of a mesh would be seen.
 const LEAST_STEPS_PER_SPACING: f64 = 16.0;

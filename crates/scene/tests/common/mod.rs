@@ -62,7 +62,8 @@ pub fn regions_of(svg: &str) -> Vec<Region> {
     patches.into_iter().filter_map(region).collect()
 }
 
-/// How long the processor has worked for this thread: unlike the time of the clock it does not grow with what else the machine does.
+/// How long the processor has worked for this thread: unlike the time of the clock it does not grow with what else the
+/// machine does.
 pub fn work() -> Duration {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
     Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec.unsigned_abs() as u32)

@@ -74,7 +74,8 @@ impl Obstacle {
         Self { outline, keyframes: collider.keyframes.clone(), contact: collider.contact, friction: collider.friction }
     }
 
-    /// The obstacle at `time` [s]: pose linear between keyframes, constant outside; velocity that of the interval that begins at or before `time`.
+    /// The obstacle at `time` [s]: pose linear between keyframes, constant outside; velocity that of the interval that
+    /// begins at or before `time`.
     pub(crate) fn at(&self, time: f64) -> PlacedObstacle<'_> {
         let (pose, velocity, angular_velocity) = motion(&self.keyframes, time);
         let (sine, cosine) = pose.angle.sin_cos();
@@ -146,9 +147,9 @@ impl PlacedObstacle<'_> {
 
     /// The velocity of material at `point` [m/s] after contact; outside the obstacle it is unchanged.
     ///
-    /// Relative to the obstacle's own velocity: *stick* takes it on. *Separate* and *slip* lose the normal part v_n (thesis eq. 11), separate only
-    /// when approaching (v_n < 0); the tangential part then loses up to friction · |v_n| (Coulomb; Stomakhin et al. 2013, section 8). Slip
-    /// holds material that wants to leave, without friction.
+    /// Relative to the obstacle's own velocity: *stick* takes it on. *Separate* and *slip* lose the normal part v_n
+    /// (thesis eq. 11), separate only when approaching (v_n < 0); the tangential part then loses up to friction · |v_n|
+    /// (Coulomb; Stomakhin et al. 2013, section 8). Slip holds material that wants to leave, without friction.
     pub(crate) fn resolve(&self, velocity: Vector, point: Point) -> Vector {
         let Some(Surface { normal, .. }) = self.contact(point) else { return velocity };
         let own = self.velocity(point);

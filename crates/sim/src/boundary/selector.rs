@@ -45,8 +45,8 @@ impl<'s> Selector<'s> {
         }
     }
 
-    /// Whether a place of a body at rest is meant. Of an edge: whether it is less than `inside` deep in the material, or at most
-    /// `outside` beyond the edge [m]; a side of a box goes on outside without end.
+    /// Whether a place of a body at rest is meant. Of an edge: whether it is less than `inside` deep in the material,
+    /// or at most `outside` beyond the edge [m]; a side of a box goes on outside without end.
     pub(crate) fn selects(&self, place: Point, body: usize, inside: f64, outside: f64) -> bool {
         match self {
             Self::All => true,
@@ -61,7 +61,8 @@ impl<'s> Selector<'s> {
         }
     }
 
-    /// The pieces of the outlines that are selected, the material to their left: of an edge its own, of other selections those that lie in them.
+    /// The pieces of the outlines that are selected, the material to their left: of an edge its own, of other
+    /// selections those that lie in them.
     pub(crate) fn pieces(&self, scene: &Scene) -> Vec<[Point; 2]> {
         if let Self::Outline(stretches) = self {
             return stretches.iter().map(|s| [s.from, s.to]).collect();

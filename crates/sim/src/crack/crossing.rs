@@ -1,14 +1,17 @@
 //! The line-crossing test: does the straight line from a particle to a node cross a crack segment, and from which side?
 //!
-//! Nairn 2003 (CRAMP), as in the thesis, section 3.1.1. Signs come from an exact predicate. For a segment a → b, a particle p and a
-//! node n the four signs are those of the triangles (p, n, a), (p, n, b), (a, b, p), (a, b, n).
+//! Nairn 2003 (CRAMP), as in the thesis, section 3.1.1. Signs come from an exact predicate. For a segment a → b, a
+//! particle p and a node n the four signs are those of the triangles (p, n, a), (p, n, b), (a, b, p), (a, b, n).
 //!
 //! | signs | meaning |
 //! |---|---|
 //! | − + + −, − + + 0, 0 + + 0, − 0 + 0 | crosses, particle above |
 //! | + − − +, + − − 0, 0 − − 0, + 0 − 0 | crosses, particle below |
-//! | − 0 + −, 0 − − + | crosses too: the line passes through an end of the segment. The thesis' list leaves these out, so that a line through a vertex shared by two segments would cross neither; 0 + + − and + 0 − + stay out, so that it crosses just one, and a touched corner both or none |
+//! | − 0 + −, 0 − − + | crosses too: the line passes through an end of the segment |
 //! | 0 in the third place | the particle lies on the crack and counts as above |
+//!
+//! The third line is not in the thesis' list, where a line through a vertex that two segments share crosses neither of
+//! them. 0 + + − and + 0 − + stay out, so that it crosses just one, and a touched corner both or none.
 //!
 //! A node exactly on the crack is crossed to from either side: its own field stays empty there.
 
@@ -47,7 +50,8 @@ impl Side {
 pub(crate) struct Crossing {
     /// The side the particle is on.
     pub(crate) side: Side,
-    /// Whether the node lies on the crack itself: two segments that share the node then report one and the same crossing.
+    /// Whether the node lies on the crack itself: two segments that share the node then report one and the same
+    /// crossing.
     pub(crate) at_node: bool,
 }
 

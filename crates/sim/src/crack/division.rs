@@ -1,14 +1,15 @@
 //! Which velocity field serves a pair of a particle and a node, and with what share.
 //!
-//! The field of a pair is named by what the straight line between them crosses: nothing → the node's own field; otherwise the set of
-//! (crack, side) it crosses (Nairn 2003, generalised from one crack to any number).
+//! The field of a pair is named by what the straight line between them crosses: nothing → the node's own field;
+//! otherwise the set of (crack, side) it crosses (Nairn 2003, generalised from one crack to any number).
 //!
-//! **At a tip** a hard line-crossing test makes the crack act as if it ended at a node: the effective length jumps as the tip moves. With
-//! [`TipDivision::PartlyCut`] the pair is split by the particle's own position instead: the crack is thought to go on straight ahead
-//! of the tip, and a pair on opposite sides gives the share b to the far field and 1 − b to the node's own, where b falls
-//! from 1 to 0 over one particle spacing on either side of the tip, with a slope that is a hat. A node that lies far enough ahead of the tip is never
-//! split ([`TipCut`]). Gradients follow the product rule, ∇(b w) = b ∇w + w ∇b. The jump then ends at the tip. Where ties hold the two sides of a node together until the
-//! tip has passed it, nothing is shared: the pair is split as if the crack went on straight ahead.
+//! **At a tip** a hard line-crossing test makes the crack act as if it ended at a node: the effective length jumps as
+//! the tip moves. With [`TipDivision::PartlyCut`] the pair is split by the particle's own position instead: the crack
+//! is thought to go on straight ahead of the tip, and a pair on opposite sides gives the share b to the far field and 1
+//! − b to the node's own, where b falls from 1 to 0 over one particle spacing on either side of the tip, with a slope
+//! that is a hat. A node that lies far enough ahead of the tip is never split ([`TipCut`]). Gradients follow the
+//! product rule, ∇(b w) = b ∇w + w ∇b. The jump then ends at the tip. Where ties hold the two sides of a node together
+//! until the tip has passed it, nothing is shared: the pair is split as if the crack went on straight ahead.
 
 use crate::crack::crossing::{NetCrossing, Side, crossing};
 use fissure_plane::{Point, Vector, orientation};
@@ -26,13 +27,14 @@ pub(crate) const WINDOW: f64 = 2.0;
 pub(crate) struct TipCut {
     /// A node farther ahead of the tip than this is never split.
     pub(crate) node_ahead: f64,
-    /// Whether pairs share out: the far field gets b of a pair that lies on opposite sides of the tip's tangent. Otherwise it gets all, and something else has to
-    /// hold the two sides together.
+    /// Whether pairs share out: the far field gets b of a pair that lies on opposite sides of the tip's tangent.
+    /// Otherwise it gets all, and something else has to hold the two sides together.
     pub(crate) shares: bool,
 }
 
 impl TipCut {
-    /// Where nothing else is done at the tip. K_I of an edge crack of 8 cells over 80 places of the tip in a cell: −1.7 to +1.7 %, standard deviation 0.9 %.
+    /// Where nothing else is done at the tip. K_I of an edge crack of 8 cells over 80 places of the tip in a cell: −1.7
+    /// to +1.7 %, standard deviation 0.9 %.
     pub(crate) const PLAIN: Self = Self { node_ahead: 0.3, shares: true };
 
     /// Where ties hold the two sides of a node together until the tip has passed it.
@@ -49,8 +51,9 @@ pub(crate) enum LineEnd {
     /// Open: at a ring of the body or on another crack. The line goes on for so far beyond it [m], so that
     /// lines to nodes outside the body are cut as well.
     Open(f64),
-    /// On another crack. The line goes on for so far beyond it [m], for pairs only that cross the other crack as well: material on
-    /// the far side of the other crack stays whole, but the fields of the two corners on this side stay apart.
+    /// On another crack. The line goes on for so far beyond it [m], for pairs only that cross the other crack as well:
+    /// material on the far side of the other crack stays whole, but the fields of the two corners on this side stay
+    /// apart.
     Junction {
         /// The crack it ends on.
         crack: u32,
@@ -163,8 +166,8 @@ impl Division {
         (self.reach + 1.0) * self.cell_size
     }
 
-    /// Segments of a crack around `point`, rising: all within [`Division::surroundings`], some beside, and always the first and the last one, whose ends may
-    /// have moved on since the division was made.
+    /// Segments of a crack around `point`, rising: all within [`Division::surroundings`], some beside, and always the
+    /// first and the last one, whose ends may have moved on since the division was made.
     pub(crate) fn segments_around(&self, crack: u32, point: Point) -> Vec<usize> {
         let Some(index) = self.lines.iter().position(|line| line.crack == crack) else { return Vec::new() };
         let of = &self.lines[index].of;
@@ -190,8 +193,8 @@ impl Division {
         self.buckets.keys().copied()
     }
 
-    /// Whether a crack may divide the pair of a particle at `point` and any node of the box from `low` to `high`, which holds the
-    /// particle. When it says no, no pair is divided.
+    /// Whether a crack may divide the pair of a particle at `point` and any node of the box from `low` to `high`, which
+    /// holds the particle. When it says no, no pair is divided.
     pub(crate) fn may_divide(&self, point: Point, low: Point, high: Point) -> bool {
         self.bucket(point).iter().any(|&(line, segment)| {
             let (a, b) = self.lines[line as usize].segments[segment as usize];
@@ -204,8 +207,8 @@ impl Division {
         })
     }
 
-    /// Calls `visit` with (crack, segment of it) for every segment that the line from `particle` to `node` crosses; a continuation counts as the
-    /// segment it carries on.
+    /// Calls `visit` with (crack, segment of it) for every segment that the line from `particle` to `node` crosses; a
+    /// continuation counts as the segment it carries on.
     pub(crate) fn for_each_crossed(&self, particle: Point, node: Point, mut visit: impl FnMut(u32, usize)) {
         for &(line, segment) in self.bucket(particle) {
             let line = &self.lines[line as usize];
@@ -313,7 +316,8 @@ fn prepare(line: &CrackLine, tip_division: TipDivision, cut: TipCut, cell_size: 
     Line { crack: line.crack, segments, tips, cut, kinds, of, has_junction }
 }
 
-/// The crack across which two fields face each other, and the side of the first; none when they differ by more than one crack.
+/// The crack across which two fields face each other, and the side of the first; none when they differ by more than one
+/// crack.
 pub(crate) fn facing(first: &[(u32, Side)], second: &[(u32, Side)]) -> Option<(u32, Side)> {
     let only_first: Vec<_> = first.iter().filter(|x| !second.contains(x)).collect();
     let only_second: Vec<_> = second.iter().filter(|x| !first.contains(x)).collect();
@@ -336,7 +340,8 @@ struct Cut {
     gradient: Vector,
 }
 
-/// Whether the boxes around the segments `p`–`q` and `a`–`b` share no point; most segments near a particle are nowhere near the pair.
+/// Whether the boxes around the segments `p`–`q` and `a`–`b` share no point; most segments near a particle are nowhere
+/// near the pair.
 #[inline]
 fn apart(p: Point, q: Point, a: Point, b: Point) -> bool {
     p.x.max(q.x) < a.x.min(b.x)
@@ -345,8 +350,9 @@ fn apart(p: Point, q: Point, a: Point, b: Point) -> bool {
         || p.y.min(q.y) > a.y.max(b.y)
 }
 
-/// The share b at a distance `behind` its middle, and its slope: the integral of a hat of half width `width` (0: a step). Particles stand `width` apart, so
-/// their samples of the slope always add up to the same, and each changes continuously as the tip moves.
+/// The share b at a distance `behind` its middle, and its slope: the integral of a hat of half width `width` (0: a
+/// step). Particles stand `width` apart, so their samples of the slope always add up to the same, and each changes
+/// continuously as the tip moves.
 fn ramp(behind: f64, width: f64) -> (f64, f64) {
     if width <= 0.0 {
         return (f64::from(behind >= 0.0), 0.0);

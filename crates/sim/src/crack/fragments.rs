@@ -6,8 +6,9 @@ use crate::particles::Particles;
 use fissure_scene::{CrackEnd, TipDivision};
 use std::collections::HashMap;
 
-/// Splits the fragments in `pieces` (one number per particle) where the cracks, at rest, have cut neighbours apart. A fragment that splits keeps
-/// its number for the part with the first particle; the others get the next free numbers, in the order of their first particles.
+/// Splits the fragments in `pieces` (one number per particle) where the cracks, at rest, have cut neighbours apart. A
+/// fragment that splits keeps its number for the part with the first particle; the others get the next free numbers, in
+/// the order of their first particles.
 pub(crate) fn split(particles: &Particles, cracks: &[Crack], cell_size: f64, pieces: &mut [u32]) {
     let s = particles.spacing;
     // Neighbours are one spacing apart; an open end goes so far on that no pair slips past it.
@@ -32,7 +33,8 @@ pub(crate) fn split(particles: &Particles, cracks: &[Crack], cell_size: f64, pie
         for step in [[1, 0], [0, 1]] {
             let place = particles.place[p];
             let Some(q) = particles.at([place[0] + step[0], place[1] + step[1]]) else { continue };
-            // A particle exactly on a crack belongs to its upper side; as a node it would be beyond the crack from either side.
+            // A particle exactly on a crack belongs to its upper side; as a node it would be beyond the crack from
+            // either side.
             let crossed =
                 |from: usize, to: usize| !division.crossed(particles.rest[from], particles.rest[to]).is_empty();
             if particles.body[p] == particles.body[q] && !(crossed(p, q) && crossed(q, p)) {

@@ -65,8 +65,8 @@ impl GuideWalk {
         self.walked += step;
     }
 
-    /// The direction from `tip`, which need not be on the guide, to the guide `over` [m] beyond the place nearest to it (unit vector). None at the end of the
-    /// guide.
+    /// The direction from `tip`, which need not be on the guide, to the guide `over` [m] beyond the place nearest to it
+    /// (unit vector). None at the end of the guide.
     pub(crate) fn drawn_direction(&self, tip: Point, over: f64) -> Option<Vector> {
         let mut nearest = (f64::INFINITY, 0.0);
         let mut before = 0.0;

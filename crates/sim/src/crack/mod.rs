@@ -48,9 +48,11 @@ pub(crate) struct Tip {
     pub(crate) measured: Measured,
     /// Where the increment ends that the tip is on its way through; none between increments.
     pub(crate) target: Option<Point>,
-    /// What the tip has taken out of the body beyond what its growth costs [J/m], never negative; only so much of it counts as the next way allows.
+    /// What the tip has taken out of the body beyond what its growth costs [J/m], never negative; only so much of it
+    /// counts as the next way allows.
     pub(crate) balance: f64,
-    /// Direction of growth asked for by the stress, averaged over the last moments; at rest, not normalised. Zero: nothing known.
+    /// Direction of growth asked for by the stress, averaged over the last moments; at rest, not normalised. Zero:
+    /// nothing known.
     pub(crate) heading: Vector,
 }
 
@@ -75,8 +77,8 @@ impl Tip {
 }
 
 impl Tip {
-    /// Crack length this tip has added so far without what it is ahead of its speed limit [m]: a leap, over the last ligament or into two branches, counts as
-    /// it would have been run.
+    /// Crack length this tip has added so far without what it is ahead of its speed limit [m]: a leap, over the last
+    /// ligament or into two branches, counts as it would have been run.
     pub(crate) fn run(&self) -> f64 {
         self.grown - self.ahead_of_limit.max(0.0)
     }
@@ -124,7 +126,8 @@ pub(crate) struct Measured {
     pub(crate) radius_shrunk: bool,
 }
 
-/// A polyline with no segment longer than `longest` [m]; its own points stay. The faces of a crack are known at its points only.
+/// A polyline with no segment longer than `longest` [m]; its own points stay. The faces of a crack are known at its
+/// points only.
 fn subdivided(points: &[Point], longest: f64) -> Vec<Point> {
     let mut result = vec![points[0]];
     for w in points.windows(2) {
@@ -144,7 +147,8 @@ pub(crate) fn slot(end: End) -> usize {
     }
 }
 
-/// Length of the chord that gives the direction of a crack at its tip, in cells: as long as the smallest radius of an integral.
+/// Length of the chord that gives the direction of a crack at its tip, in cells: as long as the smallest radius of an
+/// integral.
 pub(crate) const DIRECTION_LENGTH: f64 = 2.0;
 
 /// The place on a polyline at the arc length `over` [m] from one end, or its other end when it is shorter.
@@ -223,10 +227,12 @@ impl Crack {
         }
     }
 
-    /// Unit vector along the crack at rest, pointing ahead of the end: along the chord from the place `over` [m] behind the tip (or the other end).
+    /// Unit vector along the crack at rest, pointing ahead of the end: along the chord from the place `over` [m] behind
+    /// the tip (or the other end).
     ///
-    /// Measured and grown over the same chord, a kink shorter than what the integrals resolve counts only as far as it has come. Taken along the last
-    /// increment alone, the same K_II would turn the crack again at every increment until it has run in a circle.
+    /// Measured and grown over the same chord, a kink shorter than what the integrals resolve counts only as far as it
+    /// has come. Taken along the last increment alone, the same K_II would turn the crack again at every increment
+    /// until it has run in a circle.
     pub(crate) fn ahead(&self, end: End, over: f64) -> Vector {
         let tip = self.tip_position(end);
         (tip - chord_start(&self.points, end, over)).normalize()
@@ -265,7 +271,8 @@ impl Crack {
         self.tips.iter().flatten().filter(|t| t.state.is_live()).count()
     }
 
-    /// The crack as the division sees it, its points being at `points` (rest or current); open ends go `beyond` [m] farther.
+    /// The crack as the division sees it, its points being at `points` (rest or current); open ends go `beyond` [m]
+    /// farther.
     pub(crate) fn line(&self, crack: usize, points: Vec<Point>, beyond: f64) -> CrackLine {
         let end = |e: CrackEnd| match e {
             CrackEnd::Tip => LineEnd::Tip,
@@ -275,7 +282,8 @@ impl Crack {
         CrackLine { crack: crack as u32, points, start: end(self.ends[0]), end: end(self.ends[1]) }
     }
 
-    /// The record of a tip for a frame; `position` [m] and `direction` [rad] are the current ones, `interval` [s] the time since the last frame.
+    /// The record of a tip for a frame; `position` [m] and `direction` [rad] are the current ones, `interval` [s] the
+    /// time since the last frame.
     pub(crate) fn record(
         &self,
         crack: usize,

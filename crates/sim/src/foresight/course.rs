@@ -109,7 +109,8 @@ const MEAN_SPEED: f64 = 0.8;
 pub(crate) struct Course {
     /// Length by which they grow [m].
     pub(crate) growth: f64,
-    /// How long their tips are looked at, all together [s]: one that has come to the end of its way no longer is, one that nothing loads seldom.
+    /// How long their tips are looked at, all together [s]: one that has come to the end of its way no longer is, one
+    /// that nothing loads seldom.
     pub(crate) watched: f64,
 }
 

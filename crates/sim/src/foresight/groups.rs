@@ -5,7 +5,8 @@ use crate::grid::spans::Span;
 use crate::particles::Particles;
 use fissure_scene::Scene;
 
-/// The number of the group that each particle belongs to. Cracks are left aside. Time goes with the number of rows of particles and of gaps in them.
+/// The number of the group that each particle belongs to. Cracks are left aside. Time goes with the number of rows of
+/// particles and of gaps in them.
 pub(super) fn groups(scene: &Scene, particles: &Particles) -> Vec<u32> {
     let reach = Reach::new(scene);
     let rows: Vec<(i32, &[Span])> = particles.lattice().rows().collect();
@@ -136,8 +137,8 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(300))]
-        /// Truth: the nodes of all stencils of the solver, for every kernel and number of particles per cell, on bodies of ragged
-        /// outlines beside each other.
+        /// Truth: the nodes of all stencils of the solver, for every kernel and number of particles per cell, on bodies
+        /// of ragged outlines beside each other.
         #[test]
         fn groups_are_what_shares_nodes(
             corners in prop::collection::vec((0_u32..120, 0_u32..120), 3..14),

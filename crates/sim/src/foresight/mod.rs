@@ -1,7 +1,7 @@
 //! What will go wrong with a scene, told before it runs.
 //!
-//! Faults need the particles and stop a simulation before it begins. Warnings come from the scene alone and stop nothing; they rest on estimates of
-//! the order of magnitude, made so that they stay silent where they are not sure.
+//! Faults need the particles and stop a simulation before it begins. Warnings come from the scene alone and stop
+//! nothing; they rest on estimates of the order of magnitude, made so that they stay silent where they are not sure.
 
 mod buried;
 mod course;
@@ -27,7 +27,8 @@ use fissure_scene::{Scene, SceneFault, Warning};
 /// Checks what can be seen only when the particles are laid.
 ///
 /// # Errors
-/// A body that is too narrow for its particles to hold together; supports that contradict each other; a body inside a collider.
+/// A body that is too narrow for its particles to hold together; supports that contradict each other; a body inside a
+/// collider.
 pub(crate) fn check_layout(scene: &Scene, particles: &Particles) -> Result<(), SceneFault> {
     wholeness::check_wholeness(scene, particles)?;
     supports::check_supports(scene, particles)?;

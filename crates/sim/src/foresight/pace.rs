@@ -10,7 +10,8 @@ const FEWEST_FRAMES: f64 = 3.0;
 /// Frames that show it well.
 const GOOD_FRAMES: f64 = 12.0;
 
-/// That all cracks may be through within three frames. Only where loads or impacts drive them: what is moved slowly opens cracks slowly.
+/// That all cracks may be through within three frames. Only where loads or impacts drive them: what is moved slowly
+/// opens cracks slowly.
 pub(super) fn crosses_at_once(scene: &Scene, elastic: &[Elastic]) -> Option<Warning> {
     let falls = scene.gravity != Vector::zeros() && !scene.colliders.is_empty();
     let flies = scene.bodies.iter().any(|b| !b.velocities.is_empty());

@@ -1,4 +1,5 @@
-//! What a body hands on through the section that a crack lies in, and the stress intensity that this makes: handbook solutions.
+//! What a body hands on through the section that a crack lies in, and the stress intensity that this makes: handbook
+//! solutions.
 
 use super::course::DrawnTip;
 use super::samples::{PlacedForce, Samples};
@@ -56,7 +57,8 @@ impl Section {
         self.tip + self.ahead * (0.5 * (self.ligament - self.length - self.behind.unwrap_or(0.0)))
     }
 
-    /// Normal force, shear force [N/m] and moment about the middle [N] that `forces` on the left of the section hand on through it.
+    /// Normal force, shear force [N/m] and moment about the middle [N] that `forces` on the left of the section hand on
+    /// through it.
     pub(super) fn resultants(&self, forces: &[PlacedForce]) -> [f64; 3] {
         let (normal, center) = (Vector::new(-self.ahead.y, self.ahead.x), self.center());
         let left = forces.iter().filter(|f| normal.dot(&(f.place - self.tip)) > 0.0);
@@ -66,7 +68,8 @@ impl Section {
         })
     }
 
-    /// Stress intensity that resultants make at rest [Pa·√m], whatever their sign: what closes a crack may swing back and open it.
+    /// Stress intensity that resultants make at rest [Pa·√m], whatever their sign: what closes a crack may swing back
+    /// and open it.
     ///
     /// Tada, Paris & Irwin: single edge crack in tension, bending and shear; centre crack with the secant factor.
     pub(super) fn stress_intensity(&self, [normal, shear, moment]: [f64; 3]) -> f64 {
@@ -95,8 +98,9 @@ impl Section {
     }
 }
 
-/// All forces on one body at the factors `factors` of the loads: loads, gravity, reactions of supports and inertia. In balance: the body is taken for a
-/// rigid one on springs at its supports, and on far weaker ones everywhere, which is d'Alembert's inertia where no support holds.
+/// All forces on one body at the factors `factors` of the loads: loads, gravity, reactions of supports and inertia. In
+/// balance: the body is taken for a rigid one on springs at its supports, and on far weaker ones everywhere, which is
+/// d'Alembert's inertia where no support holds.
 pub(super) fn balanced_forces(scene: &Scene, samples: &Samples, body: usize, factors: &[f64]) -> Vec<PlacedForce> {
     let particles = &samples.particles;
     let own: Vec<usize> = (0..particles.len()).filter(|&p| particles.body[p] as usize == body).collect();

@@ -66,7 +66,8 @@ pub(crate) fn overload(scene: &Scene, elastic: &[Elastic]) -> Option<String> {
     Some(format!("{message}; {remedy}"))
 }
 
-/// Stress that a load makes in what it acts on [Pa], and the softest material there; force over the length it is spread along.
+/// Stress that a load makes in what it acts on [Pa], and the softest material there; force over the length it is spread
+/// along.
 fn nominal_stress(scene: &Scene, elastic: &[Elastic], load: &Load) -> Option<(usize, f64)> {
     let body = match &load.selection {
         Selection::Bodies(bodies) | Selection::Edge { bodies: Some(bodies), .. } => *bodies.first()?,

@@ -3,7 +3,8 @@
 use crate::particles::Particles;
 use fissure_scene::{KeyPath, Scene, SceneFault, Support};
 
-/// Supports that share no more than this part of what the smaller one holds meet in a corner: there the later one holds.
+/// Supports that share no more than this part of what the smaller one holds meet in a corner: there the later one
+/// holds.
 const CORNER: f64 = 0.25;
 
 /// That no two supports give most of the same particles different velocities.

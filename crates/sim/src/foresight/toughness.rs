@@ -10,8 +10,9 @@ use std::f64::consts::PI;
 
 /// A load that comes at once swings to twice what it makes at rest.
 const DYNAMIC: f64 = 2.0;
-/// Handbook solutions are for strips; bodies are not. With 1.3, of 120 plates with cracks, loads and supports at random three came up to 1.9 times
-/// nearer to their toughness than estimated; the median of the estimates is twice what comes out.
+/// Handbook solutions are for strips; bodies are not. With 1.3, of 120 plates with cracks, loads and supports at random
+/// three came up to 1.9 times nearer to their toughness than estimated; the median of the estimates is twice what comes
+/// out.
 const UNSURE: f64 = 1.6;
 /// Part of the nominal stress that reaches a crack however it lies: waves, lateral strain, other cracks.
 const STRAY: f64 = 0.25;
@@ -59,8 +60,8 @@ fn percent(part: f64) -> String {
     format!("{} %", two_digits(100.0 * part, f64::round))
 }
 
-/// For each crack: what its tips may feel within all frames as a part of their toughness, an estimate from above. Negative without a live tip; NaN
-/// where nothing can be told.
+/// For each crack: what its tips may feel within all frames as a part of their toughness, an estimate from above.
+/// Negative without a live tip; NaN where nothing can be told.
 pub(super) fn greatest_loads(scene: &Scene, elastic: &[Elastic]) -> Vec<f64> {
     let mut found = vec![-1.0; scene.cracks.len()];
     let mut tips: Vec<DrawnTip<'_>> = DrawnTip::all(scene).collect();

@@ -9,13 +9,15 @@ use fissure_scene::{KeyPath, Scene, SceneFault};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ops::Range;
 
-/// A group of particles is a part of the body where it is two particles wide both ways, or when it has at least so many. Others are the ends of corners:
-/// what lies beyond a place too narrow for particles in a shape that gets narrower and narrower is nowhere two wide, and holds fewer
-/// than this while the angle is 1° or more, at any spacing.
+/// A group of particles is a part of the body where it is two particles wide both ways, or when it has at least so
+/// many. Others are the ends of corners: what lies beyond a place too narrow for particles in a shape that gets
+/// narrower and narrower is nowhere two wide, and holds fewer than this while the angle is 1° or more, at any spacing.
 const FEWEST_OF_PART: usize = 30;
-/// An outline that runs so far, in spacings, without a particle of a part beside it has lost what it encloses. In a corner of 2° or more it is shorter.
+/// An outline that runs so far, in spacings, without a particle of a part beside it has lost what it encloses. In a
+/// corner of 2° or more it is shorter.
 const LONGEST_BARE: f64 = 60.0;
-/// A particle lies this near, in spacings, to a straight edge of material that is wide enough for particles, however it is turned.
+/// A particle lies this near, in spacings, to a straight edge of material that is wide enough for particles, however it
+/// is turned.
 const BESIDE: f64 = 1.25;
 /// Outlines are looked at in so many places per spacing.
 const LOOKS: f64 = 4.0;
@@ -160,7 +162,8 @@ impl Layout<'_> {
         is_lost.then(|| Narrow { place, width: (across - from).norm(), outcome: Outcome::LeftOut })
     }
 
-    /// The pieces of a ring along which no part is beside it, or the part beside it changes. Those that change reach on for a spacing.
+    /// The pieces of a ring along which no part is beside it, or the part beside it changes. Those that change reach on
+    /// for a spacing.
     fn stretches(&self, ring: &[Point]) -> Vec<Stretch> {
         let points = looked_at(ring, self.particles.spacing / LOOKS);
         let beside: Vec<Option<u32>> = points.iter().map(|&place| self.part_beside(place)).collect();
@@ -250,7 +253,8 @@ mod tests {
         Region { exterior: list.iter().map(place).collect(), holes: Vec::new() }
     }
 
-    /// Two plates of the given sizes around (0, 0), joined by a bridge of half the width `w`; of length 0 by the place between two notches.
+    /// Two plates of the given sizes around (0, 0), joined by a bridge of half the width `w`; of length 0 by the place
+    /// between two notches.
     fn dumbbell(w: f64, length: f64, left: (f64, f64), right: (f64, f64)) -> Vec<(f64, f64)> {
         let l = 0.5 * length;
         let half = |side: f64, (wide, high): (f64, f64)| {
@@ -277,8 +281,8 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(400))]
-        /// Truth: whether the particles in the middles of the plates share nodes with each other, and the construction of the neck. With
-        /// the spacing of the remedy the body holds together.
+        /// Truth: whether the particles in the middles of the plates share nodes with each other, and the construction
+        /// of the neck. With the spacing of the remedy the body holds together.
         #[test]
         fn a_dumbbell_without_a_neck_is_refused(
             width in 0.1_f64..3.0, length in prop_oneof![Just(0.0), 1.0_f64..30.0], size in -3.0_f64..3.0, turn in -PI..PI,
@@ -312,7 +316,8 @@ mod tests {
             }
         }
 
-        /// Truth: the construction. Corners down to 2°, blunt or sharp, discs, crescents and plates at any turn are whole at any spacing.
+        /// Truth: the construction. Corners down to 2°, blunt or sharp, discs, crescents and plates at any turn are
+        /// whole at any spacing.
         #[test]
         fn ordinary_shapes_are_whole(points in 3_usize..9, sharp in 2.0_f64..60.0, turn in -PI..PI, spacing in 0.2_f64..2.0, x in 0.0_f64..1.0) {
             let radius = 12.0;
@@ -337,7 +342,8 @@ mod tests {
         }
     }
 
-    /// Truth: the construction. A plate with a long bar, or a spike, that runs between two rows of particles; a hair that is nowhere wide.
+    /// Truth: the construction. A plate with a long bar, or a spike, that runs between two rows of particles; a hair
+    /// that is nowhere wide.
     #[test]
     fn long_thin_parts_are_told() {
         let with_bar = |low: f64, high: f64, length: f64| {

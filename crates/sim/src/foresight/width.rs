@@ -5,8 +5,9 @@ use fissure_scene::{KeyPath, Region, Scene, Warning};
 /// Cells across a body, at least: bending needs that many to be bending.
 const FEWEST_CELLS: f64 = 8.0;
 
-/// Width of a region [m]: the smaller side of the rectangle that has its area and its perimeter, holes counted. Exact for rectangles however they are
-/// turned; of a thin ring it is about its thickness, of a disc the side of the square of its area.
+/// Width of a region [m]: the smaller side of the rectangle that has its area and its perimeter, holes counted. Exact
+/// for rectangles however they are turned; of a thin ring it is about its thickness, of a disc the side of the square
+/// of its area.
 pub(super) fn width(region: &Region) -> f64 {
     let area = region.area();
     let perimeter: f64 =
@@ -61,7 +62,8 @@ mod tests {
                 .collect()
         };
         let ring = Region { exterior: circle(10.0, 1.0), holes: vec![circle(9.0, -1.0)] };
-        // A strip of width w as long as the ring, 19 π m, has two ends more, which the width makes up for: w²/(L − w) = 0.017 m.
+        // A strip of width w as long as the ring, 19 π m, has two ends more, which the width makes up for: w²/(L − w) =
+        // 0.017 m.
         assert!((width(&ring) - 1.0 - 0.017).abs() < 1e-3, "{}", width(&ring));
     }
 }

@@ -1,7 +1,8 @@
 //! Velocity fields at nodes: which degree of freedom serves a node for particles that see it across given cracks.
 //!
-//! Every node has its own field; its degree of freedom has the number of the node. Nodes near cracks have further fields, one for each set
-//! of (crack, side) that particles cross on the way to the node; their number is not limited, and a scene without a crack has none.
+//! Every node has its own field; its degree of freedom has the number of the node. Nodes near cracks have further
+//! fields, one for each set of (crack, side) that particles cross on the way to the node; their number is not limited,
+//! and a scene without a crack has none.
 
 use crate::crack::division::CrossedSet;
 use crate::saved::{self, Fits};

@@ -1,7 +1,7 @@
 //! Interpolation kernels: weights w_ip and gradients ∇w_ip between a particle and the nodes around it.
 //!
-//! All lengths inside are in cells: node i of an axis stands at i. The plane kernels are products of one-dimensional ones, so a
-//! hot loop needs only four weights and four gradients per axis.
+//! All lengths inside are in cells: node i of an axis stands at i. The plane kernels are products of one-dimensional
+//! ones, so a hot loop needs only four weights and four gradients per axis.
 
 use fissure_scene::{Kernel, Vector};
 
@@ -29,7 +29,8 @@ pub(crate) struct AxisStencil {
     pub(crate) gradient: [f64; MAX_WIDTH],
 }
 
-/// Weights along one axis for a particle at `x` [cells]; `half_size` is half the particle's domain l_p [cells], at most 1/2, used by GIMP only.
+/// Weights along one axis for a particle at `x` [cells]; `half_size` is half the particle's domain l_p [cells], at most
+/// 1/2, used by GIMP only.
 ///
 /// Where a kernel has a kink (bilinear: exactly on a node) the derivative is that of the higher cell.
 #[inline(always)]
@@ -42,7 +43,8 @@ pub(crate) fn axis_stencil(kernel: Kernel, half_size: f64, x: f64) -> AxisStenci
     }
 }
 
-/// ⌊x⌋ as a number and as an index. Without a call into the mathematical library, which baseline x86-64 needs for `f64::floor`.
+/// ⌊x⌋ as a number and as an index. Without a call into the mathematical library, which baseline x86-64 needs for
+/// `f64::floor`.
 #[inline(always)]
 fn floor(x: f64) -> (f64, i32) {
     let truncated = x as i32;
@@ -57,7 +59,8 @@ fn bilinear(x: f64) -> AxisStencil {
     AxisStencil { first, weight: [1.0 - f, f, 0.0, 0.0], gradient: [-1.0, 1.0, 0.0, 0.0] }
 }
 
-/// The hat averaged over the particle's domain [x - l, x + l] (uniform GIMP, Bardenhagen & Kober 2004); l = 0 gives the hat.
+/// The hat averaged over the particle's domain [x - l, x + l] (uniform GIMP, Bardenhagen & Kober 2004); l = 0 gives the
+/// hat.
 #[inline(always)]
 fn gimp(half_size: f64, x: f64) -> AxisStencil {
     debug_assert!((0.0..=0.5).contains(&half_size), "a domain wider than a cell reaches more than three nodes");
@@ -124,7 +127,8 @@ pub(crate) struct Stencil {
 }
 
 impl Stencil {
-    /// The stencil of a particle at `place` [cells from node (0, 0)]; `half_size` as in [`axis_stencil`]; `inverse_cell_size` 1/h [1/m].
+    /// The stencil of a particle at `place` [cells from node (0, 0)]; `half_size` as in [`axis_stencil`];
+    /// `inverse_cell_size` 1/h [1/m].
     #[inline(always)]
     pub(crate) fn new(kernel: Kernel, half_size: f64, place: [f64; 2], inverse_cell_size: f64) -> Self {
         let x = axis_stencil(kernel, half_size, place[0]);
@@ -170,7 +174,8 @@ mod tests {
         all
     }
 
-    // The sums have at most 16 terms below 1 in size: 16 rounding errors of 1.1e-16 each, times the node index (below 10).
+    // The sums have at most 16 terms below 1 in size: 16 rounding errors of 1.1e-16 each, times the node index (below
+    // 10).
     const ROUND_OFF: f64 = 2e-14;
 
     #[test]
@@ -210,8 +215,9 @@ mod tests {
 
     #[test]
     fn gradient_is_the_derivative_of_the_weight() {
-        // Central differences of piecewise cubics: error below step²·|w'''|/6 plus round-off / step, 1e-10 in all; across a kink of
-        // w' (bilinear on a node) the truth is not defined, so those places are left out; across a kink of w'' the error is step·|Δw''|/2.
+        // Central differences of piecewise cubics: error below step²·|w'''|/6 plus round-off / step, 1e-10 in all;
+        // across a kink of w' (bilinear on a node) the truth is not defined, so those places are left out; across a
+        // kink of w'' the error is step·|Δw''|/2.
         let step = 1e-6;
         for (kernel, half_size) in KERNELS {
             for i in 0..200 {

@@ -1,7 +1,8 @@
 //! The background lattice: which nodes there are, where they are and how they are numbered.
 //!
-//! Only nodes near material exist, so that memory goes with the material and not with the box around it. Rows of nodes come in bands of
-//! [`BAND`]. A band has spans of columns, which all its rows share; nodes are numbered band by band, row by row, columns rising:
+//! Only nodes near material exist, so that memory goes with the material and not with the box around it. Rows of nodes
+//! come in bands of [`BAND`]. A band has spans of columns, which all its rows share; nodes are numbered band by band,
+//! row by row, columns rising:
 //!
 //! ```text
 //!   row 5        14 15 16 17      band 1: columns 2 to 5
@@ -25,7 +26,8 @@ use std::ops::Range;
 /// Rows of nodes in a band: at least one less than the widest kernel reaches, so that no stencil lies in more than two.
 pub(crate) const BAND: usize = 4;
 
-/// Spans with no more columns than this between them become one: a few nodes without material cost less than one more span.
+/// Spans with no more columns than this between them become one: a few nodes without material cost less than one more
+/// span.
 const LARGEST_GAP: i32 = 8;
 
 /// More columns or rows than this are not counted.
@@ -75,8 +77,8 @@ fn row_in_band(row: i32) -> usize {
 }
 
 impl Grid {
-    /// A lattice that has a node at `anchor` and node (0, 0) `margin` cells below and to the left of the box from `low` to `high`; it has no node yet. None when
-    /// the box is too large to count its cells.
+    /// A lattice that has a node at `anchor` and node (0, 0) `margin` cells below and to the left of the box from `low`
+    /// to `high`; it has no node yet. None when the box is too large to count its cells.
     pub(crate) fn around(anchor: Point, low: Point, high: Point, cell_size: f64, margin: i64) -> Option<Self> {
         // A box edge that lies on a grid line up to rounding counts as on it.
         let slack = 1e-9;
@@ -102,7 +104,8 @@ impl Grid {
         self.origin == before.origin && self.cell_size == before.cell_size
     }
 
-    /// Makes the nodes of all stencils of `width` nodes per axis whose lowest nodes are `lowest`, with `room` more cells around each.
+    /// Makes the nodes of all stencils of `width` nodes per axis whose lowest nodes are `lowest`, with `room` more
+    /// cells around each.
     pub(crate) fn lay(&mut self, lowest: impl Iterator<Item = [i32; 2]>, width: usize, room: i32) {
         let reach = width as i32 - 1 + room;
         let mut patches: Vec<Patch> = Vec::new();
@@ -319,7 +322,8 @@ impl<'a> Walker<'a> {
         Self { grid, found: [Found { band: i32::MIN, row: 0, first: 0, end: 0, node: 0, width: 0 }; 2] }
     }
 
-    /// First node of each row of a stencil of `width` nodes per axis whose lowest node is at `lowest`; none unless all of its nodes exist.
+    /// First node of each row of a stencil of `width` nodes per axis whose lowest node is at `lowest`; none unless all
+    /// of its nodes exist.
     #[inline(always)]
     pub(crate) fn rows(&mut self, lowest: [i32; 2], width: usize) -> Option<[usize; MAX_WIDTH]> {
         let [i, j] = lowest;
@@ -453,7 +457,8 @@ mod tests {
             both.lay(square(0, 0, 40).chain(square(away[0], away[1], 40)), 4, 1);
             assert_eq!((both.len(), both.span_count()), (2 * alone.len(), 2 * alone.span_count()), "{away:?}");
         }
-        // A bar along the diagonal, three cells thick: stencils that begin in a band reach over 11 columns, those of the bands above and below by four more.
+        // A bar along the diagonal, three cells thick: stencils that begin in a band reach over 11 columns, those of
+        // the bands above and below by four more.
         let mut bar = grid();
         bar.lay((0..100_000).flat_map(|i| (0..3).map(move |k| [i + k, i])), 4, 1);
         assert!(bar.len() < 100_000 * 20, "{}", bar.len());

@@ -1,5 +1,5 @@
-//! Which places of a lattice lie inside a region, found row by row along its rings: work goes with the length of the rings and with what is found, not with
-//! the box around them.
+//! Which places of a lattice lie inside a region, found row by row along its rings: work goes with the length of the
+//! rings and with what is found, not with the box around them.
 
 use fissure_plane::{Point, Region, Vector, orientation};
 use std::ops::Range;
@@ -19,7 +19,8 @@ impl Places {
         self.anchor + Vector::new(f64::from(i) + 0.5, f64::from(j) + 0.5) * self.spacing
     }
 
-    /// Calls `visit` with a row and a run of columns for all places inside `region`: those that [`Region::contains`]. Rows rise, and columns within them.
+    /// Calls `visit` with a row and a run of columns for all places inside `region`: those that [`Region::contains`].
+    /// Rows rise, and columns within them.
     pub(crate) fn for_each_run_inside(&self, region: &Region, mut visit: impl FnMut(i32, Range<i32>)) {
         let (low, high) = region.bounds();
         let box_low = ((low - self.anchor) / self.spacing).map(|t| t.floor() as i32);
@@ -102,7 +103,8 @@ mod tests {
     use std::collections::BTreeSet;
 
     proptest! {
-        /// Truth: the test of every place of the box. Corners lie on places, on rows and anywhere; rings may cross, where the even-odd rule counts.
+        /// Truth: the test of every place of the box. Corners lie on places, on rows and anywhere; rings may cross,
+        /// where the even-odd rule counts.
         #[test]
         fn runs_are_the_places_inside(
             corners in prop::collection::vec((-20_i32..20, -20_i32..20, 0.0..1.0_f64), 3..12),

@@ -1,4 +1,5 @@
-//! Places of an unbounded lattice, kept as spans: runs of columns in rows. Memory goes with what is there, not with the box around it.
+//! Places of an unbounded lattice, kept as spans: runs of columns in rows. Memory goes with what is there, not with the
+//! box around it.
 
 /// A run of neighbouring places in one row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,7 +48,8 @@ impl SpanRows {
         self.spans.clear();
     }
 
-    /// Adds a span behind all others: its row is that of the last one or above it, its columns are beyond those of the row.
+    /// Adds a span behind all others: its row is that of the last one or above it, its columns are beyond those of the
+    /// row.
     pub(crate) fn push(&mut self, row: i32, span: Span) {
         debug_assert!(self.rows.last().is_none_or(|last| last.row <= row), "rows rise");
         if self.rows.last().is_none_or(|last| last.row != row) {
@@ -110,7 +112,8 @@ impl SpanRows {
         self.span_with(self.index_of(row)?, column)?.number_of(column)
     }
 
-    /// (column, row, number) of the places in the box from `low` to `high` (column, row; both included), row by row, columns rising.
+    /// (column, row, number) of the places in the box from `low` to `high` (column, row; both included), row by row,
+    /// columns rising.
     pub(crate) fn within(&self, low: [i32; 2], high: [i32; 2]) -> impl Iterator<Item = (i32, i32, usize)> {
         let rows = (self.index_from(low[1])..self.rows.len()).take_while(move |&index| self.rows[index].row <= high[1]);
         rows.flat_map(move |index| {

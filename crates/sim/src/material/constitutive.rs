@@ -1,14 +1,14 @@
 //! Stress from deformation: fixed-corotated elasticity and snow plasticity (Stomakhin et al. 2013), in the plane.
 //!
-//! Everything starts from the displacement gradient H = F - I rather than from F, and no difference of nearly equal numbers is
-//! formed when H is small: a strain of 1e-9 keeps its digits.
+//! Everything starts from the displacement gradient H = F - I rather than from F, and no difference of nearly equal
+//! numbers is formed when H is small: a strain of 1e-9 keeps its digits.
 
 use fissure_scene::{Matrix, Plasticity};
 
 /// F - R, with R the rotation of the polar decomposition F = R S, from H = F - I.
 ///
-/// In the plane R = [[a, -b], [b, a]]/r with a = F11+F22, b = F21-F12, r = √(a²+b²). R is not defined when r = 0 (an inversion with
-/// equal singular values); it is then taken as the identity.
+/// In the plane R = [[a, -b], [b, a]]/r with a = F11+F22, b = F21-F12, r = √(a²+b²). R is not defined when r = 0 (an
+/// inversion with equal singular values); it is then taken as the identity.
 #[inline]
 fn deformation_beyond_rotation(h: &Matrix) -> Matrix {
     let a = 2.0 + h.m11 + h.m22;
@@ -17,7 +17,8 @@ fn deformation_beyond_rotation(h: &Matrix) -> Matrix {
     if r == 0.0 {
         return *h;
     }
-    // 1 - a/r without cancellation: r - a = b²/(r+a) when a > 0; near a half turn r + a vanishes but r - a does not cancel.
+    // 1 - a/r without cancellation: r - a = b²/(r+a) when a > 0; near a half turn r + a vanishes but r - a does not
+    // cancel.
     let one_minus_cosine = if a > 0.0 { b * b / (r * (r + a)) } else { (r - a) / r };
     let sine = b / r;
     Matrix::new(h.m11 + one_minus_cosine, h.m12 + sine, h.m21 - sine, h.m22 + one_minus_cosine)
@@ -31,8 +32,8 @@ pub fn volume_change(h: &Matrix) -> f64 {
 
 /// First Piola–Kirchhoff stress P = 2μ(F - R) + λ(J-1) J F⁻ᵀ [Pa] of the displacement gradient `h` = F - I [–].
 ///
-/// Source: Stomakhin et al. 2013. `lambda` is that of the plane state ([`crate::Elastic`]). Finite for every finite `h`, inverted
-/// material included.
+/// Source: Stomakhin et al. 2013. `lambda` is that of the plane state ([`crate::Elastic`]). Finite for every finite
+/// `h`, inverted material included.
 #[inline]
 pub fn first_piola_stress(h: &Matrix, mu: f64, lambda: f64) -> Matrix {
     // J F⁻ᵀ is the cofactor matrix of F.
@@ -46,7 +47,8 @@ pub fn kirchhoff_stress(h: &Matrix, mu: f64, lambda: f64) -> Matrix {
     let e = deformation_beyond_rotation(h);
     let jacobian_minus_one = volume_change(h);
     let pressure = lambda * jacobian_minus_one * (1.0 + jacobian_minus_one);
-    // (F-R)Fᵀ = E + E Hᵀ with E = F - R, so that a small H is never added to 1. It is symmetric; the halves' mean makes it so to the bit.
+    // (F-R)Fᵀ = E + E Hᵀ with E = F - R, so that a small H is never added to 1. It is symmetric; the halves' mean makes
+    // it so to the bit.
     let s11 = e.m11 + e.m11 * h.m11 + e.m12 * h.m12;
     let s22 = e.m22 + e.m21 * h.m21 + e.m22 * h.m22;
     let s12 = 0.5 * (e.m12 + e.m21 + e.m11 * h.m21 + e.m12 * h.m22 + e.m21 * h.m11 + e.m22 * h.m12);
@@ -81,11 +83,12 @@ pub struct PlasticStep {
     pub plastic: Matrix,
 }
 
-/// Clamps the singular values of the trial F_E to [1-θ_c, 1+θ_s] and moves the rest into F_P; none when they are within.
+/// Clamps the singular values of the trial F_E to [1-θ_c, 1+θ_s] and moves the rest into F_P; none when they are
+/// within.
 ///
-/// F_E* = U Σ* Vᵀ, Σ = clamp Σ*, F_E = U Σ Vᵀ, F_P := V Σ⁻¹ Uᵀ F_E* F_P, so that F_E F_P is unchanged. `elastic_trial` is F_E* - I.
-/// Source: Stomakhin et al. 2013. The thesis prints Vᵀ for V in its eq. 17. U and V are rotations; inverted material has a
-/// negative Σ* and is pushed back to 1-θ_c. Needs θ_c < 1.
+/// F_E* = U Σ* Vᵀ, Σ = clamp Σ*, F_E = U Σ Vᵀ, F_P := V Σ⁻¹ Uᵀ F_E* F_P, so that F_E F_P is unchanged. `elastic_trial`
+/// is F_E* - I. Source: Stomakhin et al. 2013. The thesis prints Vᵀ for V in its eq. 17. U and V are rotations;
+/// inverted material has a negative Σ* and is pushed back to 1-θ_c. Needs θ_c < 1.
 pub fn plastic_step(elastic_trial: &Matrix, plastic: &Matrix, plasticity: &Plasticity) -> Option<PlasticStep> {
     let svd = SingularValues::of_identity_plus(elastic_trial);
     let (low, high) = (1.0 - plasticity.critical_compression, 1.0 + plasticity.critical_stretch);
@@ -225,8 +228,8 @@ mod tests {
         assert!(first_piola_stress(&mirror, MU, LAMBDA).iter().all(|s| s.is_finite()));
     }
 
-    /// Truth: Hooke's law, from which the finite law differs by terms of the relative size of H itself. The third-order terms of a rotation w
-    /// are relative to w too; its second-order strain w²/2 is part of the truth.
+    /// Truth: Hooke's law, from which the finite law differs by terms of the relative size of H itself. The third-order
+    /// terms of a rotation w are relative to w too; its second-order strain w²/2 is part of the truth.
     #[test]
     fn tiny_strains_keep_their_digits() {
         let shape = Matrix::new(0.2, 1.1, -0.4, 1.0);
@@ -236,7 +239,8 @@ mod tests {
             (1e-14 * shape, 1e-12),
             // A rotation a thousand times the strain.
             (1e-9 * shape + 1e-6 * spin, 1e-5),
-            // A rotation whose w²/2 = 8e-16 is as large as the strain: the least rounding of 1 - cos would be an error of 10 %.
+            // A rotation whose w²/2 = 8e-16 is as large as the strain: the least rounding of 1 - cos would be an error
+            // of 10 %.
             (1e-15 * shape + 4e-8 * spin, 1e-6),
         ] {
             let w = 0.5 * (h.m21 - h.m12);

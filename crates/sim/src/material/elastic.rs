@@ -46,8 +46,8 @@ impl Elastic {
 
     /// Speed of Rayleigh waves c_R [m/s], the limit of a crack in mode I: 4√(1-c²/c_d²)√(1-c²/c_s²) = (2-c²/c_s²)².
     pub fn rayleigh_wave_speed(&self) -> f64 {
-        // Squared and divided by z = (c/c_s)², which removes the root at rest, this is a cubic with one root between 0 and 1:
-        // it is -16(1-k) at 0 and 1 at 1, with k = (c_s/c_d)².
+        // Squared and divided by z = (c/c_s)², which removes the root at rest, this is a cubic with one root between 0
+        // and 1: it is -16(1-k) at 0 and 1 at 1, with k = (c_s/c_d)².
         let k = self.mu / (self.lambda + 2.0 * self.mu);
         let cubic = |z: f64| ((z - 8.0) * z + 8.0 * (3.0 - 2.0 * k)) * z - 16.0 * (1.0 - k);
         let (mut low, mut high) = (0.0, 1.0);
@@ -82,7 +82,8 @@ mod tests {
         Elastic::new(&material, plane)
     }
 
-    /// Truth: roots of the Rayleigh equation found independently (arbitrary bracket on the irrational form), printed to 0.05 m/s.
+    /// Truth: roots of the Rayleigh equation found independently (arbitrary bracket on the irrational form), printed to
+    /// 0.05 m/s.
     #[test]
     fn wave_speeds_agree_with_the_table() {
         let table = [

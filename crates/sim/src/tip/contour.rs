@@ -6,8 +6,9 @@ use std::f64::consts::{PI, TAU};
 /// Number of segments of the circle.
 pub(crate) const SEGMENTS: usize = 16;
 
-/// Which face of the crack a part of the circle belongs to; "above" is to the left when looking in the growth direction. At the start of a
-/// crack, which grows against the crack's own direction, this is the opposite of the crack's own above.
+/// Which face of the crack a part of the circle belongs to; "above" is to the left when looking in the growth
+/// direction. At the start of a crack, which grows against the crack's own direction, this is the opposite of the
+/// crack's own above.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ContourHalf {
     /// From the lower face to ahead of the tip: fields are those of the material below the crack.
@@ -49,9 +50,11 @@ pub(crate) struct Contour {
 }
 
 impl Contour {
-    /// The circle around `tip` between the points where it meets the lower and the upper face [m]; only their directions from the tip count.
+    /// The circle around `tip` between the points where it meets the lower and the upper face [m]; only their
+    /// directions from the tip count.
     ///
-    /// A closed crack, whose points coincide, gives the full circle, faces that overlap a little more than that. The opening may be up to a half turn.
+    /// A closed crack, whose points coincide, gives the full circle, faces that overlap a little more than that. The
+    /// opening may be up to a half turn.
     pub(crate) fn new(tip: Point, radius: f64, lower: Point, upper: Point) -> Self {
         let angle = |p: Point| (p.y - tip.y).atan2(p.x - tip.x);
         let start = angle(lower);
@@ -67,8 +70,9 @@ impl Contour {
 
     /// The J-integral [J/m²] as a vector in the world frame; its component along the growth direction is J.
     ///
-    /// J_k = ∫ [(W + K) n_k - σ_ij n_j ∂u_i/∂x_k] ds, by the midpoint rule on true arcs: exact on the K field around a closed crack. Source: Guo &
-    /// Nairn 2004 by way of the thesis' eq. 28, with the kinetic energy of the velocity. No area term: for dynamics see the domain form.
+    /// J_k = ∫ [(W + K) n_k - σ_ij n_j ∂u_i/∂x_k] ds, by the midpoint rule on true arcs: exact on the K field around a
+    /// closed crack. Source: Guo & Nairn 2004 by way of the thesis' eq. 28, with the kinetic energy of the velocity. No
+    /// area term: for dynamics see the domain form.
     ///
     /// `sample` gives the state at a point, from the material of one half.
     /// # Errors
@@ -119,7 +123,8 @@ mod tests {
         }
     }
 
-    /// Truth: J_1 = (K_I²+K_II²)/E', J_2 = -2 K_I K_II/E'. The integrand is a trigonometric polynomial of degree 6, so 16 midpoints are exact.
+    /// Truth: J_1 = (K_I²+K_II²)/E', J_2 = -2 K_I K_II/E'. The integrand is a trigonometric polynomial of degree 6, so
+    /// 16 midpoints are exact.
     #[test]
     fn k_field_gives_irwins_j_on_any_circle() {
         let effective_modulus = 8.0 * MU / (KOLOSOV + 1.0);
@@ -146,8 +151,8 @@ mod tests {
         }
     }
 
-    /// Constant W and no stress leaves ∫ W n ds: the chord from the lower to the upper face, turned by -90 degrees. The midpoint
-    /// rule on arcs of angle s gives it but for the factor (s/2)/sin(s/2).
+    /// Constant W and no stress leaves ∫ W n ds: the chord from the lower to the upper face, turned by -90 degrees. The
+    /// midpoint rule on arcs of angle s gives it but for the factor (s/2)/sin(s/2).
     #[test]
     fn open_and_overlapping_faces_change_the_sweep() {
         let tip = Point::new(1.0, 2.0);
@@ -161,7 +166,8 @@ mod tests {
                 displacement_gradient: Matrix::identity(),
             })
         };
-        // Growth along 0 puts the jump of atan2 between the faces, to be crossed in either sense; along -2 it lies on the circle.
+        // Growth along 0 puts the jump of atan2 between the faces, to be crossed in either sense; along -2 it lies on
+        // the circle.
         for (growth, gap) in [(0.0, 0.3), (0.0, -0.1), (-2.0, 0.3), (-2.0, 0.0), (-2.0, -0.1), (0.0, 2.0)] {
             let (upper, lower) = (at(growth + PI - 0.5 * gap), at(growth - PI + 0.5 * gap));
             let contour = Contour::new(tip, radius, lower, upper);

@@ -1,14 +1,16 @@
 //! J and the interaction integral over a disc around a crack tip, particles as quadrature points.
 //!
 //! With q = 1 near the tip and 0 at the rim (tip frame, e1 ahead):
-//! J = Σ V [(P_iJ u_i,1 − (W + T) δ_1J) q,J + ρ (a_i u_i,1 − v_i v_i,1) q]: the energy release rate of a resting or moving tip. For a resting
-//! tip T and the v-term cancel.
-//! M = Σ V [(s_ij U_i,1 + S_ij u_i,1 − s_ij U_i,j δ_1j) q,j + ρ a_i U_i,1 q] with Williams' fields (U, S) of one mode, K = E' M / 2: signed,
-//! mode by mode.
-//! Faces that press on each other or rub take a part of both: ∫ t_i [u_i],1 q ds and ∫ t_i [U_i],1 q ds, with the traction t on the face on the +e2
-//! side and the jump [·] from the other side to it, are taken off (the boundary term of the same integration by parts; of J that of the sliding, since pressed faces have no opening). At a closed crack K_I is then
-//! what it is, zero, and K_II is short of what friction carries.
-//! Sources: Li, Shih & Needleman 1985 (domain form of J); Yau, Wang & Corten 1980 (interaction integral); Nakamura, Shih & Freund 1985 (dynamic terms).
+//! J = Σ V [(P_iJ u_i,1 − (W + T) δ_1J) q,J + ρ (a_i u_i,1 − v_i v_i,1) q]: the energy release rate of a resting or
+//! moving tip. For a resting tip T and the v-term cancel.
+//! M = Σ V [(s_ij U_i,1 + S_ij u_i,1 − s_ij U_i,j δ_1j) q,j + ρ a_i U_i,1 q] with Williams' fields (U, S) of one mode,
+//! K = E' M / 2: signed, mode by mode.
+//! Faces that press on each other or rub take a part of both: ∫ t_i [u_i],1 q ds and ∫ t_i [U_i],1 q ds, with the
+//! traction t on the face on the +e2 side and the jump [·] from the other side to it, are taken off (the boundary term
+//! of the same integration by parts; of J that of the sliding, since pressed faces have no opening). At a closed crack
+//! K_I is then what it is, zero, and K_II is short of what friction carries.
+//! Sources: Li, Shih & Needleman 1985 (domain form of J); Yau, Wang & Corten 1980 (interaction integral); Nakamura,
+//! Shih & Freund 1985 (dynamic terms).
 
 use crate::crack::crossing::Side;
 use crate::material::elastic::Elastic;
@@ -32,8 +34,8 @@ pub(crate) struct DomainIntegrals {
 
 /// q and ∇q at a place: 1 within `inner`, falling to 0 at `outer` [m] with continuous first and second derivative.
 ///
-/// q = 1 − t³ (10 − 15 t + 6 t²). On exact K fields with 200 random offsets of the lattice (2×2 particles per cell, 1 and 4 cells) the largest
-/// error of K is 0.1 %; a linear ramp gives 3 %, a cubic one 0.6 %.
+/// q = 1 − t³ (10 − 15 t + 6 t²). On exact K fields with 200 random offsets of the lattice (2×2 particles per cell, 1
+/// and 4 cells) the largest error of K is 0.1 %; a linear ramp gives 3 %, a cubic one 0.6 %.
 fn weight(place: Vector, inner: f64, outer: f64) -> (f64, Vector) {
     let r = place.norm();
     if r <= inner {
@@ -50,7 +52,8 @@ fn weight(place: Vector, inner: f64, outer: f64) -> (f64, Vector) {
 
 /// q is 1 within this radius, in cells.
 const INNER_RADIUS: f64 = 1.0;
-/// Contacts so near to the tip, in cells, feel the jump of the tip's own field; those farther off that of the particles beside them.
+/// Contacts so near to the tip, in cells, feel the jump of the tip's own field; those farther off that of the particles
+/// beside them.
 const OF_TIP: f64 = 1.5;
 /// Particles within this distance, in cells, tell how the jump across the crack changes.
 const JUMP_REACH: f64 = 0.75;
@@ -122,7 +125,8 @@ struct Spread {
     inverse_root: f64,
 }
 
-/// Means over the part with r > 0 of the hat of a node at the distance `center` from the tip, which reaches a cell to both sides [m].
+/// Means over the part with r > 0 of the hat of a node at the distance `center` from the tip, which reaches a cell to
+/// both sides [m].
 fn spread(center: f64, cell_size: f64, q: impl Fn(f64) -> f64) -> Spread {
     const PARTS: u32 = 16;
     let (low, high) = ((center - cell_size).max(0.0).sqrt(), (center + cell_size).sqrt());
@@ -143,7 +147,8 @@ fn spread(center: f64, cell_size: f64, q: impl Fn(f64) -> f64) -> Spread {
     Spread { weight: weight / length, inverse_root: inverse_root / length }
 }
 
-/// How the sliding of the faces, [u_1], changes along e1 at a distance `behind` the tip [–], from the particles on the two sides within a `reach` [m].
+/// How the sliding of the faces, [u_1], changes along e1 at a distance `behind` the tip [–], from the particles on the
+/// two sides within a `reach` [m].
 fn slope_of_sliding(points: &[QuadraturePoint], behind: f64, reach: f64) -> f64 {
     let place = Vector::new(-behind, 0.0);
     let mean = |side: Side| {
@@ -158,8 +163,8 @@ fn slope_of_sliding(points: &[QuadraturePoint], behind: f64, reach: f64) -> f64 
     }
 }
 
-/// The place, moved onto the straight crack's own face when a bent crack has it on the other side of the tip's line, or when it lies on that line but for
-/// round-off: a particle midway between the two that the line was centred on does.
+/// The place, moved onto the straight crack's own face when a bent crack has it on the other side of the tip's line, or
+/// when it lies on that line but for round-off: a particle midway between the two that the line was centred on does.
 fn beside_crack(place: Vector, side: Side) -> Vector {
     let distance = place.norm();
     if place.x < 0.0 && place.y * side.sign() < 1e-9 * distance {
@@ -169,8 +174,9 @@ fn beside_crack(place: Vector, side: Side) -> Vector {
     }
 }
 
-/// The place of a particle of some `volume` at which the auxiliary fields stand for it: at least 0.317 √V from the tip, where 1/√r is as large as its
-/// mean over a disc of that area around the tip. At its centre it would be infinite for a particle that the tip hits.
+/// The place of a particle of some `volume` at which the auxiliary fields stand for it: at least 0.317 √V from the tip,
+/// where 1/√r is as large as its mean over a disc of that area around the tip. At its centre it would be infinite for a
+/// particle that the tip hits.
 fn out_of_core(place: Vector, volume: f64) -> Vector {
     let (distance, least) = (place.norm(), 0.317 * volume.sqrt());
     if distance >= least {
@@ -202,7 +208,8 @@ mod tests {
         Elastic::new(&material, plane)
     }
 
-    /// The field of K_I and K_II with a uniform stress besides, which the faces hand on, on a lattice of 2×2 particles per cell of length 1.
+    /// The field of K_I and K_II with a uniform stress besides, which the faces hand on, on a lattice of 2×2 particles
+    /// per cell of length 1.
     fn zone(e: &Elastic, k: [f64; 2], uniform: Matrix, offset: Vector) -> TipZone {
         let mut points = Vec::new();
         let strain =
@@ -241,8 +248,8 @@ mod tests {
 
     const OFFSETS: [Vector; 3] = [Vector::new(0.1, 0.2), Vector::new(0.33, -0.41), Vector::new(0.0, 0.25)];
 
-    /// Truth: the exact K field gives back K_I, K_II and J = (K_I² + K_II²)/E'. Tolerance: the quadrature error of at most 0.1 % (K) and 0.1 % (J) at a radius
-    /// of 4 cells, see [`weight`].
+    /// Truth: the exact K field gives back K_I, K_II and J = (K_I² + K_II²)/E'. Tolerance: the quadrature error of at
+    /// most 0.1 % (K) and 0.1 % (J) at a radius of 4 cells, see [`weight`].
     #[test]
     fn an_exact_field_gives_its_own_stress_intensities() {
         for e in [PlaneState::Strain, PlaneState::Stress].map(elastic) {
@@ -260,8 +267,8 @@ mod tests {
         }
     }
 
-    /// Truth: a uniform stress that closed faces hand on has no stress intensities (superposition). Without the part of the faces both would be off by more
-    /// than 1.
+    /// Truth: a uniform stress that closed faces hand on has no stress intensities (superposition). Without the part of
+    /// the faces both would be off by more than 1.
     #[test]
     fn what_closed_faces_hand_on_does_not_load_the_tip() {
         for e in [PlaneState::Strain, PlaneState::Stress].map(elastic) {

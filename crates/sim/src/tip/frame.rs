@@ -16,7 +16,8 @@ pub(crate) fn turn(cosine: f64, sine: f64) -> (Matrix, Matrix) {
     (Matrix::new(c, -s, s, c), Matrix::new(c_minus_one, -s, s, c_minus_one))
 }
 
-/// One end of a crack of which the points are at `points` now, and the direction ahead of it (unit vector); that at rest where they all coincide.
+/// One end of a crack of which the points are at `points` now, and the direction ahead of it (unit vector); that at
+/// rest where they all coincide.
 pub(crate) fn tip_of(crack: &Crack, points: &[Point], end: End, cell_size: f64) -> (Point, Vector) {
     let over = DIRECTION_LENGTH * cell_size;
     let tip = if end == End::Start { points[0] } else { points[points.len() - 1] };
@@ -25,8 +26,8 @@ pub(crate) fn tip_of(crack: &Crack, points: &[Point], end: End, cell_size: f64) 
     (tip, if length > 0.0 { ahead / length } else { crack.ahead(end, over) })
 }
 
-/// The face of the crack through `points` that a place sees, as a side of the frame of one of its tips (`ahead`: e1): that of the nearest segment behind
-/// the tip, of the tip's own line ahead.
+/// The face of the crack through `points` that a place sees, as a side of the frame of one of its tips (`ahead`: e1):
+/// that of the nearest segment behind the tip, of the tip's own line ahead.
 pub(crate) fn side_of(points: &[Point], end: End, ahead: Vector, place: Point) -> Side {
     let n = points.len();
     let tip = if end == End::Start { points[0] } else { points[n - 1] };

@@ -18,11 +18,11 @@ const SMALLEST_RADIUS: f64 = 2.0;
 const PART_OF_ROOM: f64 = 0.375;
 /// ... but over so many cells at least, ...
 const NARROW_RADIUS: f64 = 4.0;
-/// ... and at most: its error falls with their number. K_I of edge cracks of 16 and 32 cells is off by 0.16 and 0.16 % (rms) with four cells, by 0.08 and
-/// 0.05 % with six.
+/// ... and at most: its error falls with their number. K_I of edge cracks of 16 and 32 cells is off by 0.16 and 0.16 %
+/// (rms) with four cells, by 0.08 and 0.05 % with six.
 const WIDE_RADIUS: f64 = 6.0;
-/// A turn of the crack by more than this counts as a kink [rad]: over it the energy of a field along the crack is no longer that of one direction. Growth in
-/// quarter cells along a smooth path turns by less.
+/// A turn of the crack by more than this counts as a kink [rad]: over it the energy of a field along the crack is no
+/// longer that of one direction. Growth in quarter cells along a smooth path turns by less.
 pub(crate) const KINK: f64 = 0.26;
 
 /// What the integrals around a tip give. What it means for growth is said by [`crate::growth::judge`].
@@ -32,7 +32,8 @@ pub(crate) struct Reading {
     pub(crate) j_integral: f64,
     /// K_I and K_II.
     pub(crate) modes: StressIntensity,
-    /// The stress intensities that decide on growth: those that what is released amounts to, shared out as the modes are.
+    /// The stress intensities that decide on growth: those that what is released amounts to, shared out as the modes
+    /// are.
     pub(crate) decisive: StressIntensity,
     /// What of J drives growth [J/m²].
     pub(crate) released: f64,
@@ -105,7 +106,8 @@ impl Gauge<'_> {
         }
     }
 
-    /// Distance from a tip to the nearest thing that would spoil the integral: a ring, another crack, the other end of this one, a kink [m].
+    /// Distance from a tip to the nearest thing that would spoil the integral: a ring, another crack, the other end of
+    /// this one, a kink [m].
     fn free_radius(&self, cracks: &[Crack], crack: usize, end: End) -> f64 {
         let line = &cracks[crack];
         let tip = line.tip_position(end);
@@ -143,7 +145,8 @@ impl Gauge<'_> {
         free.min((points[points.len() - 1] - tip).norm())
     }
 
-    /// J along the crack by the thesis' contour: 16 segments, values by kernel averages of the particles on the same side (its eq. 25 to 28).
+    /// J along the crack by the thesis' contour: 16 segments, values by kernel averages of the particles on the same
+    /// side (its eq. 25 to 28).
     fn contour_j(&self, zone: &TipZone, radius: f64) -> f64 {
         let opening = if zone.opening_distance > 0.0 {
             zone.opening.y.max(0.0) * (radius / zone.opening_distance).sqrt()
@@ -205,15 +208,18 @@ impl Gauge<'_> {
     }
 }
 
-/// The modes of a crack whose faces cannot overlap: no K_I below zero, and none at all where they press on each other at the tip. What the integral leaves
-/// there is the error of the pressure's part: one per cent of the K_I that the pressure would have without contact.
+/// The modes of a crack whose faces cannot overlap: no K_I below zero, and none at all where they press on each other
+/// at the tip. What the integral leaves there is the error of the pressure's part: one per cent of the K_I that the
+/// pressure would have without contact.
 fn without_overlap(split: StressIntensity, closed: bool) -> StressIntensity {
     StressIntensity { mode_1: if closed { 0.0 } else { split.mode_1.max(0.0) }, ..split }
 }
 
-/// The stress intensities that decide on growth. When: by the energy release rate, J. Where to: by the ratio of the modes.
+/// The stress intensities that decide on growth. When: by the energy release rate, J. Where to: by the ratio of the
+/// modes.
 ///
-/// Of a crack that is closed, only what its K_II accounts for counts: a crack gains nothing from the energy of compression.
+/// Of a crack that is closed, only what its K_II accounts for counts: a crack gains nothing from the energy of
+/// compression.
 fn decisive(j_integral: f64, split: StressIntensity, effective_modulus: f64) -> StressIntensity {
     if split.mode_1 > 0.0 {
         return StressIntensity::from_opening(j_integral, Vector::new(split.mode_2, split.mode_1), effective_modulus);
@@ -225,8 +231,8 @@ fn decisive(j_integral: f64, split: StressIntensity, effective_modulus: f64) -> 
     StressIntensity::from_opening(available, Vector::new(split.mode_2, 0.0), effective_modulus)
 }
 
-/// Inertia within the contour, ∫ ρ (a_i u_i,1 − v_i v_i,1) dA [J/m²]: what makes J independent of the contour in dynamics. Source: Nakamura, Shih & Freund
-/// 1985; the thesis leaves it out.
+/// Inertia within the contour, ∫ ρ (a_i u_i,1 − v_i v_i,1) dA [J/m²]: what makes J independent of the contour in
+/// dynamics. Source: Nakamura, Shih & Freund 1985; the thesis leaves it out.
 fn area_term(zone: &TipZone, radius: f64) -> f64 {
     zone.points
         .iter()

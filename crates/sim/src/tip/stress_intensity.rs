@@ -16,9 +16,10 @@ pub struct StressIntensity {
 impl StressIntensity {
     /// Splits J by the ratio of opening and sliding: K_I = d_I/|d| √(E'J), K_II likewise.
     ///
-    /// `opening`: upper face minus lower face behind the tip, in the tip frame (x sliding d_II, y opening d_I) [m]; only its direction counts.
-    /// `j_integral` [J/m²]; `effective_modulus` E' [Pa]. J ≤ 0 or no opening at all: both zero. d_I < 0: K_I = 0, the crack is closed;
-    /// K_II keeps its share, so that faces pressed into each other do not turn the energy of compression into shear.
+    /// `opening`: upper face minus lower face behind the tip, in the tip frame (x sliding d_II, y opening d_I) [m];
+    /// only its direction counts. `j_integral` [J/m²]; `effective_modulus` E' [Pa]. J ≤ 0 or no opening at all: both
+    /// zero. d_I < 0: K_I = 0, the crack is closed; K_II keeps its share, so that faces pressed into each other do not
+    /// turn the energy of compression into shear.
     pub fn from_opening(j_integral: f64, opening: Vector, effective_modulus: f64) -> Self {
         let size = opening.norm();
         // Written so that a NaN, too, means "nothing known, no growth".
@@ -43,9 +44,11 @@ impl StressIntensity {
     }
 }
 
-/// A_I(v) and A_II(v) [–] of G = (A_I K_I² + A_II K_II²)/E' for a tip moving at `speed` v [m/s]; 1 at rest, infinite from c_R on.
+/// A_I(v) and A_II(v) [–] of G = (A_I K_I² + A_II K_II²)/E' for a tip moving at `speed` v [m/s]; 1 at rest, infinite
+/// from c_R on.
 ///
-/// A_I = 4 v² α_d / ((κ+1) c_s² D), A_II with α_s for α_d; D = 4 α_d α_s - (1+α_s²)², α² = 1 - v²/c². Source: Freund 1990.
+/// A_I = 4 v² α_d / ((κ+1) c_s² D), A_II with α_s for α_d; D = 4 α_d α_s - (1+α_s²)², α² = 1 - v²/c². Source: Freund
+/// 1990.
 pub fn crack_speed_factors(elastic: &Elastic, speed: f64) -> [f64; 2] {
     let squares = SpeedSquares::new(elastic, speed);
     let scaled = squares.rayleigh_function_over_shear();
@@ -73,16 +76,19 @@ impl SpeedSquares {
         Self { dilatational: ratio * shear, shear, ratio }
     }
 
-    /// D c_s²/v² = [4 α_d α_s - (1+α_s²)²] c_s²/v², which has the limit 2(1 - c_s²/c_d²) at rest, without cancellation there.
+    /// D c_s²/v² = [4 α_d α_s - (1+α_s²)²] c_s²/v², which has the limit 2(1 - c_s²/c_d²) at rest, without cancellation
+    /// there.
     pub(crate) fn rayleigh_function_over_shear(&self) -> f64 {
-        // 4(w - 1) + 4q - q² with w = α_d α_s, q = v²/c_s²; 1 - w² = s, so that w - 1 = -s/(1+w); then all of it over q.
+        // 4(w - 1) + 4q - q² with w = α_d α_s, q = v²/c_s²; 1 - w² = s, so that w - 1 = -s/(1+w); then all of it over
+        // q.
         let w = ((1.0 - self.dilatational) * (1.0 - self.shear)).sqrt();
         let s_over_q = self.ratio + 1.0 - self.dilatational;
         4.0 * (1.0 - s_over_q / (1.0 + w)) - self.shear
     }
 }
 
-/// Freund's universal function k(v) [–]: K_I(t, v) = k(v) K_I(t, 0) for a half-infinite crack; 1 at rest, 0 at and above c_R.
+/// Freund's universal function k(v) [–]: K_I(t, v) = k(v) K_I(t, 0) for a half-infinite crack; 1 at rest, 0 at and
+/// above c_R.
 ///
 /// k = (1 - v/c_R)/√(1 - v/c_d) · exp((1/π) ∫ ϑ(x)/(1/v - x) dx) over 1/c_d ≤ x ≤ 1/c_s, with
 /// ϑ = atan[4x² √((x²-a²)(b²-x²)) / (b²-2x²)²], a = 1/c_d, b = 1/c_s. Source: Freund 1990.
@@ -92,8 +98,8 @@ pub fn universal_function(elastic: &Elastic, speed: f64) -> f64 {
         return 0.0;
     }
     let (a, b) = (1.0 / elastic.dilatational_wave_speed(), 1.0 / elastic.shear_wave_speed());
-    // With x on a half circle over [a, b] the integrand becomes smooth and periodic, and the midpoint rule gains digits in
-    // proportion to the number of points; the nearest singularity is 1/c_R. 64 points: below 1e-14 for 0 ≤ ν ≤ 0.49.
+    // With x on a half circle over [a, b] the integrand becomes smooth and periodic, and the midpoint rule gains digits
+    // in proportion to the number of points; the nearest singularity is 1/c_R. 64 points: below 1e-14 for 0 ≤ ν ≤ 0.49.
     const POINTS: usize = 64;
     let step = PI / POINTS as f64;
     let mut integral = 0.0;

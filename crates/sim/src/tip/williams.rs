@@ -5,7 +5,8 @@ use crate::tip::stress_intensity::SpeedSquares;
 use fissure_scene::{Matrix, Vector};
 use std::f64::consts::PI;
 
-/// The field of one mode at unit stress intensity (1 Pa·√m), in the tip frame (e1 = growth direction, e2 = e1 turned by +90°).
+/// The field of one mode at unit stress intensity (1 Pa·√m), in the tip frame (e1 = growth direction, e2 = e1 turned by
+/// +90°).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TipField {
     /// Displacement U [m].
@@ -25,8 +26,9 @@ impl TipField {
 
 /// Modes I and II of a resting tip at `place` [m] from the tip, in its frame.
 ///
-/// `mu` μ [Pa], `kolosov` κ [–]. The faces lie at θ = ±π: a `place` with y = +0 and x < 0 is on the upper one, y = -0 on the lower. Singular as
-/// 1/√r; not finite at the tip itself. Source: Williams 1957, in the notation of Kolosov and Muskhelishvili.
+/// `mu` μ [Pa], `kolosov` κ [–]. The faces lie at θ = ±π: a `place` with y = +0 and x < 0 is on the upper one, y = -0
+/// on the lower. Singular as 1/√r; not finite at the tip itself. Source: Williams 1957, in the notation of Kolosov and
+/// Muskhelishvili.
 pub fn williams_fields(place: Vector, mu: f64, kolosov: f64) -> [TipField; 2] {
     let radius = place.norm();
     let (s, c) = (0.5 * place.y.atan2(place.x)).sin_cos();
@@ -64,9 +66,9 @@ fn gradient(stress: &Matrix, rotation: f64, mu: f64, kolosov: f64) -> Matrix {
 /// With z_d = x + iα_d y, z_s = x + iα_s y, α² = 1 - v²/c², D = 4α_dα_s - (1+α_s²)², C = 2/(μ D √(2π)):
 /// mode I: u = C [(1+α_s²) (Re, -α_d Im) √z_d - 2α_dα_s (Re, -Im/α_s) √z_s];
 /// mode II: u = C α_s [2 (Im, α_d Re) √z_d - (1+α_s²) (Im, Re/α_s) √z_s].
-/// Normalised so that s22 (mode I) and s12 (mode II) ahead of the tip are 1/√(2πr). Source: Freund 1990; derived anew from the two wave
-/// equations and traction-free faces. Needs `speed` below c_R. Below a speed of 1e-4 c_s the resting fields are returned: they
-/// differ by (v/c_s)² = 1e-8, as much as the round-off of the differences above.
+/// Normalised so that s22 (mode I) and s12 (mode II) ahead of the tip are 1/√(2πr). Source: Freund 1990; derived anew
+/// from the two wave equations and traction-free faces. Needs `speed` below c_R. Below a speed of 1e-4 c_s the resting
+/// fields are returned: they differ by (v/c_s)² = 1e-8, as much as the round-off of the differences above.
 pub fn moving_tip_fields(place: Vector, elastic: &Elastic, speed: f64) -> [TipField; 2] {
     let squares = SpeedSquares::new(elastic, speed);
     if squares.shear < 1e-8 {
@@ -169,8 +171,8 @@ mod tests {
         })
     }
 
-    /// Central differences at r ≥ 0.5 with step 1e-5: error step²·|u'''|/6 + round-off/step; the round-off of a slow tip is (c_s/v)² ε, 30 ε at
-    /// .2 c_R, which makes 1e-9 of the fields (of order 1) in all.
+    /// Central differences at r ≥ 0.5 with step 1e-5: error step²·|u'''|/6 + round-off/step; the round-off of a slow
+    /// tip is (c_s/v)² ε, 30 ε at .2 c_R, which makes 1e-9 of the fields (of order 1) in all.
     const STEP: f64 = 1e-5;
 
     fn central<T: std::ops::Sub<Output = T> + std::ops::Div<f64, Output = T>>(
@@ -261,7 +263,8 @@ mod tests {
         }
     }
 
-    /// Truth: Freund's closed form A(v). The flux through a circle is a smooth periodic integrand: the midpoint rule converges quickly.
+    /// Truth: Freund's closed form A(v). The flux through a circle is a smooth periodic integrand: the midpoint rule
+    /// converges quickly.
     #[test]
     fn energy_flux_into_the_tip_gives_the_speed_factors() {
         for (speed, m, fields) in cases() {

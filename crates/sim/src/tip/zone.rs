@@ -3,9 +3,11 @@
 use crate::crack::crossing::Side;
 use fissure_scene::{Matrix, Vector};
 
-/// The state of the material around a crack tip, in the tip frame: origin at the tip, e1 ahead of it, e2 = e1 turned by +90°.
+/// The state of the material around a crack tip, in the tip frame: origin at the tip, e1 ahead of it, e2 = e1 turned by
+/// +90°.
 ///
-/// Total Lagrangian: everything in the reference configuration, the rigid turn of the tip taken off. Updated Lagrangian: the current one.
+/// Total Lagrangian: everything in the reference configuration, the rigid turn of the tip taken off. Updated
+/// Lagrangian: the current one.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct TipZone {
     /// Quadrature points.
@@ -19,8 +21,9 @@ pub(crate) struct TipZone {
 }
 
 impl TipZone {
-    /// Takes the mean velocity off, so that J is that of an observer who moves along: what a body does as a whole does not load its cracks. In exact
-    /// arithmetic the domain form does not care; the contour form without area term would take the kinetic energy of a fall for a load.
+    /// Takes the mean velocity off, so that J is that of an observer who moves along: what a body does as a whole does
+    /// not load its cracks. In exact arithmetic the domain form does not care; the contour form without area term would
+    /// take the kinetic energy of a fall for a load.
     pub(crate) fn take_off_mean_velocity(&mut self) {
         let mass: f64 = self.points.iter().map(|p| p.density * p.volume).sum();
         let momentum: Vector = self.points.iter().map(|p| p.velocity * (p.density * p.volume)).sum();
@@ -31,8 +34,9 @@ impl TipZone {
 
     /// Moves the origin sideways into the middle between the rows of particles on the two sides of the crack.
     ///
-    /// Particles feel only on which side of the crack they are, so a crack along a row of particles acts as if it ran midway between the rows it
-    /// parts. Taking places from the drawn line instead gives a K_II of up to 1 % of K_I for an edge crack of 16 cells in pure tension.
+    /// Particles feel only on which side of the crack they are, so a crack along a row of particles acts as if it ran
+    /// midway between the rows it parts. Taking places from the drawn line instead gives a K_II of up to 1 % of K_I for
+    /// an edge crack of 16 cells in pure tension.
     pub(crate) fn center_on_crack(&mut self, cell_size: f64) {
         let near = |p: &&QuadraturePoint| p.place.x.abs() < cell_size && p.place.y.abs() < cell_size;
         let beside = |side: Side| {
@@ -65,7 +69,8 @@ pub(crate) struct FaceContact {
 pub(crate) struct QuadraturePoint {
     /// Place (ξ, η) [m].
     pub(crate) place: Vector,
-    /// Face of the crack the point sees behind the tip: `Above` is the +e2 side *of the tip frame*. Decided by the crack line, not by the sign of η.
+    /// Face of the crack the point sees behind the tip: `Above` is the +e2 side *of the tip frame*. Decided by the
+    /// crack line, not by the sign of η.
     pub(crate) side: Side,
     /// Volume per unit thickness in the configuration of `place` [m²].
     pub(crate) volume: f64,

@@ -21,8 +21,8 @@ pub(crate) fn rectangle(low: [f64; 2], high: [f64; 2]) -> Region {
     Region { exterior, holes: Vec::new() }
 }
 
-/// A plate from the origin to `size` [m] in cells of `cell_size` [m], standard preset, total Lagrangian, plane strain, cracks free to grow; nothing acts on it.
-/// Frames: the first only, `frame_time` [s] apart once there are more.
+/// A plate from the origin to `size` [m] in cells of `cell_size` [m], standard preset, total Lagrangian, plane strain,
+/// cracks free to grow; nothing acts on it. Frames: the first only, `frame_time` [s] apart once there are more.
 pub(crate) fn plate(size: [f64; 2], cell_size: f64, frame_time: f64) -> Scene {
     let (mut solver, growth) = solver_preset(SolverPreset::Standard);
     solver.formulation = Formulation::Total;

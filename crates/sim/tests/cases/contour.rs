@@ -8,10 +8,11 @@ use std::f64::consts::PI;
 /// σ₀ [Pa]: strains of 1e-5.
 const TRACTION: f64 = 1e6;
 
-/// J over its closed form some time after a tension wave has met a long crack, measured at a radius of `part` of the way that dilatational waves have run since.
+/// J over its closed form some time after a tension wave has met a long crack, measured at a radius of `part` of the
+/// way that dilatational waves have run since.
 ///
-/// 10 × 4 m, edge crack of 5 m at mid height, step tension on the top edge, bottom on rollers; until the waves come back from the sides the crack is
-/// half-infinite: K_I = (2σ₀/(1−ν)) √(c_d (t−t_c)(1−2ν)/π) (Freund 1990), J = K_I²/E'.
+/// 10 × 4 m, edge crack of 5 m at mid height, step tension on the top edge, bottom on rollers; until the waves come
+/// back from the sides the crack is half-infinite: K_I = (2σ₀/(1−ν)) √(c_d (t−t_c)(1−2ν)/π) (Freund 1990), J = K_I²/E'.
 fn ratio(method: JMethod, area_term: bool, part: f64) -> f64 {
     let mut scene = plate([10.0, 4.0], 0.1, 1.0);
     scene.growth.enabled = false;
@@ -37,8 +38,8 @@ fn ratio(method: JMethod, area_term: bool, part: f64) -> f64 {
     tip.j_integral * elastic.effective_modulus / (mode_1 * mode_1)
 }
 
-/// Truth: Freund's solution, and what a fine finite element mesh gives for the contour without the area term: 0.950 and 0.722 of J at radii of 0.2 and 0.4 of the way
-/// of the waves. Here, on a coarse grid, J is 2.5 % low at any radius.
+/// Truth: Freund's solution, and what a fine finite element mesh gives for the contour without the area term: 0.950 and
+/// 0.722 of J at radii of 0.2 and 0.4 of the way of the waves. Here, on a coarse grid, J is 2.5 % low at any radius.
 #[test]
 fn the_area_term_makes_j_independent_of_the_contour() {
     let parts = [0.12, 0.2, 0.4];

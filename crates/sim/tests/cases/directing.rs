@@ -10,7 +10,8 @@ use fissure_sim::{Elastic, Simulation};
 const MOUTH: [f64; 2] = [0.0, 10.03];
 const TIP: [f64; 2] = [4.03, 10.03];
 
-/// A plate of 20 m with a straight edge crack, pulled well beyond its toughness. Frames are a fifth of the time a wave takes across.
+/// A plate of 20 m with a straight edge crack, pulled well beyond its toughness. Frames are a fifth of the time a wave
+/// takes across.
 fn pulled() -> Scene {
     let mut scene = plate([20.0, 20.0], 0.5, 4e-3);
     scene.materials[0].fracture_toughness = 2e6;
@@ -40,7 +41,8 @@ fn slope(frame: &Frame) -> f64 {
     (far.y - from.y).atan2(far.x - from.x)
 }
 
-/// Truth: the ends of the blend. Without strength a guide changes nothing; with all of it the path is the drawn one; between, between.
+/// Truth: the ends of the blend. Without strength a guide changes nothing; with all of it the path is the drawn one;
+/// between, between.
 #[test]
 fn a_guide_turns_the_crack_by_its_strength() {
     let free = after(&pulled(), 12);
@@ -110,7 +112,8 @@ fn toughness_varies_in_space() {
     assert!(end_in(0.9) > 12.0);
 }
 
-/// Truth: statics in series. Half of a bar is twice as stiff: under the same pull it stretches half as much, and the crack in a stiff strip opens less.
+/// Truth: statics in series. Half of a bar is twice as stiff: under the same pull it stretches half as much, and the
+/// crack in a stiff strip opens less.
 #[test]
 fn an_inclusion_has_its_own_stiffness() {
     let mut scene = plate([4.0, 20.0], 0.5, 4e-3);
@@ -158,7 +161,8 @@ fn an_overdriven_tip_divides() {
     assert!(frame.particles.position.iter().all(|p| p.x.is_finite() && p.y.is_finite()));
 }
 
-/// Truth: a straight run. A weak band at 30 degrees to the crack is followed as if drawn; without it the crack runs straight.
+/// Truth: a straight run. A weak band at 30 degrees to the crack is followed as if drawn; without it the crack runs
+/// straight.
 #[test]
 fn cracks_seek_what_is_weak() {
     let mut scene = pulled();

@@ -27,8 +27,9 @@ fn mouth_opening(plane: PlaneState, in_updated: bool) -> f64 {
     crack.above[0].y - crack.below[0].y
 }
 
-/// Truth: stresses under tractions alone do not depend on the plane state, displacements across a crack go with 1/E', so that their ratio is 1 − ν². Their
-/// size: 4 σ a V/E' with V = [1.46 + 3.42 (1 − cos(πa/2W))]/cos²(πa/2W), within 2 % (Tada, Paris & Irwin).
+/// Truth: stresses under tractions alone do not depend on the plane state, displacements across a crack go with 1/E',
+/// so that their ratio is 1 − ν². Their size: 4 σ a V/E' with V = [1.46 + 3.42 (1 − cos(πa/2W))]/cos²(πa/2W), within 2
+/// % (Tada, Paris & Irwin).
 #[test]
 fn a_crack_opens_by_the_effective_modulus() {
     for in_updated in [false, true] {

@@ -4,8 +4,8 @@ use crate::common::{add_crack, plate, pull, run};
 use fissure_scene::{Point, Scene};
 use fissure_sim::Simulation;
 
-/// A plate with a slanted edge crack that turns across the pull, `factor` times as large. Speeds, strains and stresses are the same at any size, so
-/// times go with the size and toughness with its root.
+/// A plate with a slanted edge crack that turns across the pull, `factor` times as large. Speeds, strains and stresses
+/// are the same at any size, so times go with the size and toughness with its root.
 fn slanted(factor: f64) -> Scene {
     let mut scene = plate([20.0 * factor, 20.0 * factor], 0.5 * factor, 2e-3 * factor);
     scene.materials[0].fracture_toughness = 2e6 * factor.sqrt();

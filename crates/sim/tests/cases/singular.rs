@@ -1,12 +1,13 @@
-//! The states of a crack in which something vanishes or coincides. Each runs in both formulations and must keep every number finite.
+//! The states of a crack in which something vanishes or coincides. Each runs in both formulations and must keep every
+//! number finite.
 
 use crate::common::{add_crack, add_traction, finite, guide, plate, pull, run, updated};
 use fissure_scene::{BoxSide, CrackEnd, End, Formulation, Frame, Point, Scene, TipRecord, TipState};
 use fissure_sim::Simulation;
 use std::f64::consts::PI;
 
-/// A plate of 16 × 16 cells of 0.5 m; nodes at multiples of 0.5 m, particles at 0.125 m + multiples of 0.25 m. Frames are about as long as a wave
-/// takes across.
+/// A plate of 16 × 16 cells of 0.5 m; nodes at multiples of 0.5 m, particles at 0.125 m + multiples of 0.25 m. Frames
+/// are about as long as a wave takes across.
 fn small_plate() -> Scene {
     let mut scene = plate([8.0, 8.0], 0.5, 5e-3);
     scene.materials[0].fracture_toughness = 8e5;
@@ -56,8 +57,8 @@ fn nothing_happens_in_the_first_step_and_without_loads() {
     }
 }
 
-/// Truth: symmetry, K_II = 0: no shear at rest, and the crack runs straight on. On a grid line (all nodes on the crack), between, and through a row of
-/// particles.
+/// Truth: symmetry, K_II = 0: no shear at rest, and the crack runs straight on. On a grid line (all nodes on the
+/// crack), between, and through a row of particles.
 #[test]
 fn a_symmetric_crack_runs_straight() {
     let lines = [("grid line", 4.0, 3.13), ("node", 4.0, 3.0), ("between", 4.25, 3.13), ("particles", 4.125, 3.125)];
@@ -83,7 +84,8 @@ fn a_symmetric_crack_runs_straight() {
     }
 }
 
-/// Truth: K_I = 0 and K_II = τ √(π a) of a short central crack in pure shear; the kink at ∓70.53° (maximum hoop stress).
+/// Truth: K_I = 0 and K_II = τ √(π a) of a short central crack in pure shear; the kink at ∓70.53° (maximum hoop
+/// stress).
 #[test]
 fn pure_shear_kinks_by_seventy_degrees() {
     for sign in [1.0, -1.0] {
@@ -140,7 +142,8 @@ fn a_closed_crack_does_not_grow() {
     }
 }
 
-/// Tips exactly where the lattice has something, close to each other, and cracks smaller than a cell: all of them grow under a pull far above toughness.
+/// Tips exactly where the lattice has something, close to each other, and cracks smaller than a cell: all of them grow
+/// under a pull far above toughness.
 #[test]
 fn tips_stand_anywhere() {
     let cases: [(&str, &[&[[f64; 2]]]); 8] = [

@@ -4,7 +4,8 @@ use crate::common::{add_crack, plate, rectangle, run, set_velocity};
 use fissure_scene::{Scene, Selection};
 use fissure_sim::Simulation;
 
-/// A plate of 150 × 150 cells, more nodes than the total formulation takes in one thread, that is torn apart: the crack grows from the second step on.
+/// A plate of 150 × 150 cells, more nodes than the total formulation takes in one thread, that is torn apart: the crack
+/// grows from the second step on.
 fn torn_plate() -> Scene {
     let mut scene = plate([15.0, 15.0], 0.1, 5e-4);
     scene.materials[0].fracture_toughness = 1e3;

@@ -23,8 +23,8 @@ fn add_floor(scene: &mut Scene, y: f64, speed: f64) {
     });
 }
 
-/// Truth: a plate under tension at two ends has that stress everywhere at rest. Loads act at the outermost particles; five cells from there, where what they
-/// are one by one has faded, 1.3 % is left.
+/// Truth: a plate under tension at two ends has that stress everywhere at rest. Loads act at the outermost particles;
+/// five cells from there, where what they are one by one has faded, 1.3 % is left.
 #[test]
 fn uniform_traction_makes_uniform_stress() {
     let mut scene = plate([4.0, 2.0], 0.25, 1.0);
@@ -101,7 +101,8 @@ fn gain(frame: &Frame, first: &Frame) -> f64 {
     (held(frame) - held(first)) / frame.energies.external_work
 }
 
-/// Truth: energy. What loads, supports, gravity and colliders do is what the body gains, as long as the transfer loses nothing (FLIP).
+/// Truth: energy. What loads, supports, gravity and colliders do is what the body gains, as long as the transfer loses
+/// nothing (FLIP).
 #[test]
 fn work_is_the_energy_gained() {
     let mut cases: Vec<(&str, Scene)> = Vec::new();
@@ -127,7 +128,8 @@ fn work_is_the_energy_gained() {
         finite(name, &frame);
         let ratio = gain(&frame, &first);
         match name {
-            // v at the end of a step does the work, and Σ v Δt over n steps is (n + 1)/n times the way: the kick that starts a leapfrog should be half a step.
+            // v at the end of a step does the work, and Σ v Δt over n steps is (n + 1)/n times the way: the kick that
+            // starts a leapfrog should be half a step.
             "gravity" => {
                 let steps = simulation.steps() as f64;
                 assert!((ratio - steps / (steps + 1.0)).abs() < 1e-10, "{ratio}");
@@ -140,8 +142,8 @@ fn work_is_the_energy_gained() {
     }
 }
 
-/// Truth: free fall, y = −g t² / 2 but for the half step at the start, without strain. Within a single frame the block becomes faster than its waves; steps that
-/// were planned at rest would carry it over several cells at once.
+/// Truth: free fall, y = −g t² / 2 but for the half step at the start, without strain. Within a single frame the block
+/// becomes faster than its waves; steps that were planned at rest would carry it over several cells at once.
 #[test]
 fn steps_become_shorter_while_a_block_becomes_faster() {
     let (gravity, time) = (5e4, 0.1);
@@ -172,7 +174,8 @@ fn an_edge_crack_is_within_the_known_error_of_the_kernel() {
         let t = simulation.frame().tips[0];
         let reference = 2.1127 * 1e4 * (4.0 * PI).sqrt();
         let of_j = (t.j_integral * YOUNG / (1.0 - POISSON * POISSON)).sqrt();
-        // Measured: 3.3 to 5.9 % too much over four heights of the crack in a cell, the most on a grid line; K_II up to 0.1 %.
+        // Measured: 3.3 to 5.9 % too much over four heights of the crack in a cell, the most on a grid line; K_II up to
+        // 0.1 %.
         for mode_1 in [t.mode_1, of_j] {
             assert!((0.02..0.065).contains(&(mode_1 / reference - 1.0)), "{mode_1} at {y}");
         }

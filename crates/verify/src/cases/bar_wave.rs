@@ -1,8 +1,9 @@
 //! Waves along a bar that cannot widen: c = √((λ+2μ)/ρ).
 //!
-//! Standing: a bar of a quarter wavelength, held at one end, stretched and let go; the speed is that of its first mode, projected on its shape. Travelling: a
-//! stress σ steps up on the free end of a bar; behind the front the stress is σ and the particle speed σ/(ρc) (closed form); reflected from the
-//! fixed end, the stress doubles. Means are taken ten cells away from fronts and ends. Cells are counted along the wavelength of the standing wave.
+//! Standing: a bar of a quarter wavelength, held at one end, stretched and let go; the speed is that of its first mode,
+//! projected on its shape. Travelling: a stress σ steps up on the free end of a bar; behind the front the stress is σ
+//! and the particle speed σ/(ρc) (closed form); reflected from the fixed end, the stress doubles. Means are taken ten
+//! cells away from fronts and ends. Cells are counted along the wavelength of the standing wave.
 
 use super::REST;
 use crate::case::{Case, Options};

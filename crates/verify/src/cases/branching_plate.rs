@@ -1,8 +1,9 @@
 //! Start of growth in the plate of the branching test (Borden et al. 2012): a brittle plate under a step of tension.
 //!
-//! 100 × 40 mm, edge crack of 50 mm, E = 32 GPa, ν = 0.2, ρ = 2450 kg/m³, G_c = 3 J/m² (K_Ic = 0.316 MPa√m), plane strain, tension σ = 1 MPa on both sides
-//! from t = 0. Reference: the two steps of tension give K_I = 2 (2σ/(1−ν)) √(c_d (t−t_c)(1−2ν)/π) (Freund 1990), which reaches K_Ic at 10.75 µs; an own
-//! finite element solution gives 10.745 µs and the K_I before. Run until the first reflections arrive, 15.75 µs. Cells are counted over half the height.
+//! 100 × 40 mm, edge crack of 50 mm, E = 32 GPa, ν = 0.2, ρ = 2450 kg/m³, G_c = 3 J/m² (K_Ic = 0.316 MPa√m), plane
+//! strain, tension σ = 1 MPa on both sides from t = 0. Reference: the two steps of tension give K_I = 2 (2σ/(1−ν))
+//! √(c_d (t−t_c)(1−2ν)/π) (Freund 1990), which reaches K_Ic at 10.75 µs; an own finite element solution gives 10.745 µs
+//! and the K_I before. Run until the first reflections arrive, 15.75 µs. Cells are counted over half the height.
 
 use crate::case::{Case, Options};
 use crate::interpolate::linear;

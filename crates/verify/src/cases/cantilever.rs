@@ -1,8 +1,9 @@
 //! First bending frequency of a cantilever.
 //!
-//! Length L, depth h, held at its left end; bent by a force at its right end, brought to rest and let go. The frequency is counted from the zero crossings of the
-//! displacement, weighted by the shape of the first mode, over three periods. Reference: ωL√(ρ/E) of an own finite element solution, ν = 0.3 (Euler and
-//! Bernoulli's beam is 0.7 to 2.8 % stiffer). Cells are counted through the depth.
+//! Length L, depth h, held at its left end; bent by a force at its right end, brought to rest and let go. The frequency
+//! is counted from the zero crossings of the displacement, weighted by the shape of the first mode, over three periods.
+//! Reference: ωL√(ρ/E) of an own finite element solution, ν = 0.3 (Euler and Bernoulli's beam is 0.7 to 2.8 % stiffer).
+//! Cells are counted through the depth.
 
 use super::REST;
 use crate::case::{Case, Options};

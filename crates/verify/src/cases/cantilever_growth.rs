@@ -1,8 +1,9 @@
 //! Double cantilever beam opened slowly: how far the crack runs, and where the work goes.
 //!
-//! Nairn's specimen: arms of 12 mm, crack of 50 mm, E = 2.5 GPa, ν = 0.33, ρ = 1200 kg/m³, plane strain, G_c = 500 J/m²; 160 mm long here, so that the ligament stays
-//! longer than five arms. The ends of the arms part by D = 5 mm within 25 of the arms' periods. Reference: J = 3 E' h³ D²/(16 (a + χh)⁴) = G_c, so that
-//! a(D) = (3 E' h³ D²/(16 G_c))^¼ − χh, χ = 0.673 (as for the resting beam), and W = U + T + G_c (a − a₀). Nothing damps.
+//! Nairn's specimen: arms of 12 mm, crack of 50 mm, E = 2.5 GPa, ν = 0.33, ρ = 1200 kg/m³, plane strain, G_c = 500
+//! J/m²; 160 mm long here, so that the ligament stays longer than five arms. The ends of the arms part by D = 5 mm
+//! within 25 of the arms' periods. Reference: J = 3 E' h³ D²/(16 (a + χh)⁴) = G_c, so that a(D) = (3 E' h³ D²/(16
+//! G_c))^¼ − χh, χ = 0.673 (as for the resting beam), and W = U + T + G_c (a − a₀). Nothing damps.
 //! Cells are counted through one arm.
 
 use super::double_cantilever::CORRECTION;

@@ -1,7 +1,7 @@
 //! Centre crack of length 2a in a plate of width 2b and height H under uniform traction at both ends, at rest.
 //!
-//! Reference: own finite element solution (graded quadratic mesh, domain interaction integral, converged to 1e-4); its long plates agree with Tada's
-//! formula for centre cracks to 0.1 %. Cells are counted along half the crack.
+//! Reference: own finite element solution (graded quadratic mesh, domain interaction integral, converged to 1e-4); its
+//! long plates agree with Tada's formula for centre cracks to 0.1 %. Cells are counted along half the crack.
 
 use super::{REST, offsets};
 use crate::case::{Case, Options};
@@ -33,7 +33,8 @@ const HEIGHTS: [f64; 3] = [0.5, 1.0, 3.0];
 /// σ [Pa].
 const TRACTION: f64 = 1e3;
 
-/// K_I/(σ√(πa)) for any a/b of the table: divided by Feddersen's √sec the table is smooth, and a polynomial passes through its entries.
+/// K_I/(σ√(πa)) for any a/b of the table: divided by Feddersen's √sec the table is smooth, and a polynomial passes
+/// through its entries.
 fn factor(column: usize, ratio: f64) -> f64 {
     let secant = |x: f64| (FRAC_PI_2 * x).cos().sqrt().recip();
     polynomial(&FACTORS.map(|(x, f)| (x, f[column] / secant(x))), ratio) * secant(ratio)

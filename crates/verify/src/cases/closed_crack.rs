@@ -1,11 +1,13 @@
 //! Centre crack that is pressed together and sheared, with friction: what its faces hand on does not load its tips.
 //!
-//! Square plate of width 4 a around a crack of half length a. The tractions on its sides are those of a uniform stress with the pressure p = 2τ on the
-//! crack and the shear τ along it. The pressure passes through the closed crack as if it were not there. Where the faces slide, friction carries the
-//! uniform shear μ p across; what is left is the plate under the shear τ − μ p alone: whatever the geometry, K_II = (1 − μ p/τ) times its value
-//! without pressure and contact, K_I = 0, and J = K_II²/E'. (Superposition; for the infinite plate K_II = (τ − μ p) √(π a).)
+//! Square plate of width 4 a around a crack of half length a. The tractions on its sides are those of a uniform stress
+//! with the pressure p = 2τ on the crack and the shear τ along it. The pressure passes through the closed crack as if
+//! it were not there. Where the faces slide, friction carries the uniform shear μ p across; what is left is the plate
+//! under the shear τ − μ p alone: whatever the geometry, K_II = (1 − μ p/τ) times its value without pressure and
+//! contact, K_I = 0, and J = K_II²/E'. (Superposition; for the infinite plate K_II = (τ − μ p) √(π a).)
 //!
-//! Friction remembers, so the pressure comes first and the shear rises slowly and damped. Cells are counted along half the crack.
+//! Friction remembers, so the pressure comes first and the shear rises slowly and damped. Cells are counted along half
+//! the crack.
 
 use crate::case::{Case, Options};
 use crate::problem::{Problem, linear_material, rectangle};
@@ -37,7 +39,8 @@ enum Faces {
     Pressed(f64),
 }
 
-/// The shear rises within so many times a shear wave takes across the plate; the pressure before, and coming to rest after, take a quarter of that.
+/// The shear rises within so many times a shear wave takes across the plate; the pressure before, and coming to rest
+/// after, take a quarter of that.
 const RISE: f64 = 40.0;
 
 /// The plate with `cells` cells (of one metre) along half a crack that is turned by some degrees.

@@ -1,8 +1,11 @@
-//! The crack-tip equation of motion: how far a crack runs that starts under a step of tension and takes the speed its energy balance asks for.
+//! The crack-tip equation of motion: how far a crack runs that starts under a step of tension and takes the speed its
+//! energy balance asks for.
 //!
-//! Setup in [`super::stepped_plate`]. The toughness is K_I of the resting crack τ = 0.6 t_c after the step's arrival; the crack starts then and runs straight
-//! (`bending` is 0). Reference: g(v(t)) = τ/(t − t_c), g = A_I k² with Freund's universal function k, whatever the history (Freund 1990); integrated here. An own finite
-//! element solution driven with this v(t) gives G/G_c = 1.02 to 1.04. 40 cells are h = 0.05 m. Cells are counted over half the height of the plate.
+//! Setup in [`super::stepped_plate`]. The toughness is K_I of the resting crack τ = 0.6 t_c after the step's arrival;
+//! the crack starts then and runs straight (`bending` is 0). Reference: g(v(t)) = τ/(t − t_c), g = A_I k² with Freund's
+//! universal function k, whatever the history (Freund 1990); integrated here. An own finite element solution driven
+//! with this v(t) gives G/G_c = 1.02 to 1.04. 40 cells are h = 0.05 m. Cells are counted over half the height of the
+//! plate.
 
 use super::stepped_plate::SteppedPlate;
 use crate::case::{Case, Options};
@@ -20,7 +23,8 @@ pub(crate) const CASE: Case = Case::new(
 /// τ/t_c.
 const DELAY: f64 = 0.6;
 
-/// g(v) = A_I(v) k(v)²: energy release rate of the moving crack as a part of that of a resting one at the same place and time.
+/// g(v) = A_I(v) k(v)²: energy release rate of the moving crack as a part of that of a resting one at the same place
+/// and time.
 fn release(elastic: &Elastic, speed: f64) -> f64 {
     crack_speed_factors(elastic, speed)[0] * universal_function(elastic, speed).powi(2)
 }

@@ -1,10 +1,10 @@
 //! Two equal cracks near each other under tension, at rest: collinear and stacked.
 //!
-//! Half length a. The reference holds in an infinite plate; here the plate is square, 2b wide with b = 14 a. What its edges do is taken from the single crack:
-//! a finite element solution for a square plate raises K by 1.39 (a/b)², 0.7 %, and the edges see two cracks by their opened volumes, each in proportion to
-//! its own K; the reference is raised by that, by 1.1 to 1.6 %.
-//! References: Tada, Paris & Irwin 2000 (collinear, elliptic integrals); own integral equation, accurate to 1e-10 (stacked).
-//! Cells are counted along half a crack.
+//! Half length a. The reference holds in an infinite plate; here the plate is square, 2b wide with b = 14 a. What its
+//! edges do is taken from the single crack: a finite element solution for a square plate raises K by 1.39 (a/b)², 0.7
+//! %, and the edges see two cracks by their opened volumes, each in proportion to its own K; the reference is raised by
+//! that, by 1.1 to 1.6 %. References: Tada, Paris & Irwin 2000 (collinear, elliptic integrals); own integral equation,
+//! accurate to 1e-10 (stacked). Cells are counted along half a crack.
 
 use super::REST;
 use crate::case::{Case, Options};

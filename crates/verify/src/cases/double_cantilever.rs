@@ -1,11 +1,11 @@
 //! Double cantilever beam, at rest: J and compliance.
 //!
-//! Two arms of height h, crack of length a from the loaded end, ligament 6 h. The shear forces ±P on the end faces are spread evenly; the opening D is
-//! that of the faces of the crack at its mouth. Cells are counted through one arm; a count of n + ½ puts the crack into the middle of a row of cells,
-//! a whole count exactly on a grid line.
+//! Two arms of height h, crack of length a from the loaded end, ligament 6 h. The shear forces ±P on the end faces are
+//! spread evenly; the opening D is that of the faces of the crack at its mouth. Cells are counted through one arm; a
+//! count of n + ½ puts the crack into the middle of a row of cells, a whole count exactly on a grid line.
 //!
-//! Reference: J = 12 P² (a + χh)²/(E'h³) and D = 8 P (a + χh)³/(E'h³) with χ = 0.6731 from an own finite element solution for a/h = 3 to 20,
-//! independent of ν and plane state; it agrees with Foote & Buchwald 1985 (0.673).
+//! Reference: J = 12 P² (a + χh)²/(E'h³) and D = 8 P (a + χh)³/(E'h³) with χ = 0.6731 from an own finite element
+//! solution for a/h = 3 to 20, independent of ν and plane state; it agrees with Foote & Buchwald 1985 (0.673).
 
 use super::REST;
 use crate::case::{Case, Options};

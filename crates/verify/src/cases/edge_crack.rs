@@ -1,8 +1,9 @@
 //! Edge crack in a plate under uniform traction at both ends (SENT), at rest.
 //!
-//! Width W, height H, crack of length a at mid height; nothing is held. With traction alone K does not depend on elastic constants or plane state.
-//! Reference: own finite element solution (graded quadratic mesh, domain interaction integral, converged to 1e-4); its column for H/W = 4 agrees with
-//! Kaya & Erdogan 1987. Cells are counted along the crack.
+//! Width W, height H, crack of length a at mid height; nothing is held. With traction alone K does not depend on
+//! elastic constants or plane state. Reference: own finite element solution (graded quadratic mesh, domain interaction
+//! integral, converged to 1e-4); its column for H/W = 4 agrees with Kaya & Erdogan 1987. Cells are counted along the
+//! crack.
 
 use super::{MOST_STEPS, REST, offsets};
 use crate::case::{Case, Options};
@@ -29,7 +30,8 @@ pub struct EdgeCrack {
     pub slenderness: u8,
     /// Cells per nominal crack length.
     pub cells: f64,
-    /// How far the tip lies from its nominal place, along and across the crack, in cells: the discretisation must not care.
+    /// How far the tip lies from its nominal place, along and across the crack, in cells: the discretisation must not
+    /// care.
     pub tip_offset: [f64; 2],
     /// Plane strain or plane stress; the stress intensity is the same.
     pub plane: PlaneState,
@@ -81,7 +83,8 @@ impl EdgeCrack {
         LENGTH + self.tip_offset[0] * self.cell_size()
     }
 
-    /// Reference K_I [Pa·√m] for the actual a/W: the table divided by Tada's formula for a long plate is smooth, and a cubic passes through its four entries.
+    /// Reference K_I [Pa·√m] for the actual a/W: the table divided by Tada's formula for a long plate is smooth, and a
+    /// cubic passes through its four entries.
     pub fn mode_1(&self) -> f64 {
         let column = match self.slenderness {
             1 => 0,

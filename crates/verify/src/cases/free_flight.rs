@@ -1,10 +1,11 @@
 //! A cracked disc that flies and one that spins: what must not change.
 //!
-//! Radius a, a slit of length a from the rim to the centre. Flight at 1 % of c_d, 2000 steps; spin at a rim speed of 1 % of c_d for ten turns.
-//! References: conservation of momentum, angular momentum (to round-off) and energy. Kinetic and strain energy of the solver are half a step apart, so that their sum ripples; energy is
-//! therefore compared between the first and the last turn, each as a mean. Strain energy is compared in the same way: after ten turns it is what it was
-//! (objectivity). Without contact of the faces; with it, the slit claps as the disc breathes, which costs strain energy, and its impulses act at two places that
-//! lie apart by the gap.
+//! Radius a, a slit of length a from the rim to the centre. Flight at 1 % of c_d, 2000 steps; spin at a rim speed of 1
+//! % of c_d for ten turns. References: conservation of momentum, angular momentum (to round-off) and energy. Kinetic
+//! and strain energy of the solver are half a step apart, so that their sum ripples; energy is therefore compared
+//! between the first and the last turn, each as a mean. Strain energy is compared in the same way: after ten turns it
+//! is what it was (objectivity). Without contact of the faces; with it, the slit claps as the disc breathes, which
+//! costs strain energy, and its impulses act at two places that lie apart by the gap.
 //! Cells are counted over the radius.
 
 use crate::case::{Case, Options};

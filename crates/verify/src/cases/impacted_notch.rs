@@ -1,12 +1,14 @@
 //! Impact between two notches (Kalthoff & Winkler): a notch that closes, shears and breaks out sideways.
 //!
-//! Half of the 100 × 200 mm plate: 100 × 100 mm, notch of 50 mm at y = 25 mm, symmetry at y = 0; the strip below the notch is driven in at 16.5 m/s, reached
-//! within 1 µs. E = 190 GPa, ν = 0.3, ρ = 8000 kg/m³, K_Ic = 68 MPa√m, plane strain. The driven nodes end one cell below the notch.
+//! Half of the 100 × 200 mm plate: 100 × 100 mm, notch of 50 mm at y = 25 mm, symmetry at y = 0; the strip below the
+//! notch is driven in at 16.5 m/s, reached within 1 µs. E = 190 GPa, ν = 0.3, ρ = 8000 kg/m³, K_Ic = 68 MPa√m, plane
+//! strain. The driven nodes end one cell below the notch.
 //!
-//! Reference for a sharp notch with frictionless faces: K_I = 0, so that the maximum hoop stress turns the crack by 70.53° and it starts when |K_II| is
-//! (√3/2) K_Ic. Own finite elements reach that at 12.87 µs with contact (pipeline/references/impacted_notch.py, element size to zero), at 13.1 µs if the faces
-//! go through each other. Experiments (notches 0.3 mm wide) and phase field or extended finite element computations give mean angles of 60 to 72° and start
-//! later. Cells are counted over the strip below the notch.
+//! Reference for a sharp notch with frictionless faces: K_I = 0, so that the maximum hoop stress turns the crack by
+//! 70.53° and it starts when |K_II| is (√3/2) K_Ic. Own finite elements reach that at 12.87 µs with contact
+//! (pipeline/references/impacted_notch.py, element size to zero), at 13.1 µs if the faces go through each other.
+//! Experiments (notches 0.3 mm wide) and phase field or extended finite element computations give mean angles of 60 to
+//! 72° and start later. Cells are counted over the strip below the notch.
 
 use crate::case::{Case, Options};
 use crate::interpolate::linear;
@@ -26,7 +28,8 @@ pub(crate) const CASE: Case = Case::new(
 /// Height of the driven strip [m].
 const STRIP: f64 = 0.025;
 const TOUGHNESS: f64 = 68e6;
-/// Time [µs], K_I and K_II [MPa√m] of an own finite element solution of the resting notch, in which its faces go through each other.
+/// Time [µs], K_I and K_II [MPa√m] of an own finite element solution of the resting notch, in which its faces go
+/// through each other.
 const AT_REST: [(f64, f64, f64); 3] = [(12.0, -24.92, -49.09), (13.2, -29.49, -59.75), (14.4, -28.19, -64.39)];
 /// Time [µs] and K_II [MPa√m] of finite elements of 0.25 mm whose faces meet without friction.
 const CLOSED: [(f64, f64); 3] = [(12.0, -50.15), (13.2, -61.59), (14.4, -69.03)];

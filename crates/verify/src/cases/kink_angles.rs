@@ -1,9 +1,11 @@
 //! First kink of slanted cracks: the angle a crack under mixed load turns by.
 //!
-//! The plates of the slanted cracks, all slants on one grid. The plate is brought to rest; then K_Ic is put 2 % below the K_eq of its tips, so that they grow.
-//! The kink is that of the first increment: beyond it the path bends at once, in proportion to the root of the length and to the stress along the crack
-//! (Cotterell & Rice 1980), for β = 15° by a quarter of the kink over three cells. Reference: maximum hoop stress (Erdogan & Sih 1963), θ = 2 atan2(−2 K_II, K_I + √(K_I² + 8 K_II²)), with the
-//! ratio K_II/K_I of a finite element solution of the plate. Cells are counted along half the crack.
+//! The plates of the slanted cracks, all slants on one grid. The plate is brought to rest; then K_Ic is put 2 % below
+//! the K_eq of its tips, so that they grow. The kink is that of the first increment: beyond it the path bends at once,
+//! in proportion to the root of the length and to the stress along the crack (Cotterell & Rice 1980), for β = 15° by a
+//! quarter of the kink over three cells. Reference: maximum hoop stress (Erdogan & Sih 1963), θ = 2 atan2(−2 K_II,
+//! K_I + √(K_I² + 8 K_II²)), with the ratio K_II/K_I of a finite element solution of the plate. Cells are counted along
+//! half the crack.
 
 use super::REST;
 use super::slanted_crack::{FACTORS, problem};

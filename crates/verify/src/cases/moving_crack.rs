@@ -1,8 +1,9 @@
 //! A crack that is driven at a given speed: K_I before and after it starts.
 //!
-//! Setup in [`super::stepped_plate`]. The crack rests until 1.5 t_c and then runs at 1500 m/s (0.51 c_R), by a guide with a schedule. Reference (Freund 1990): G = g(v) K_I²/E' with
-//! the K_I the resting crack would have, g = A_I k²; that is, J falls by the factor 0.5165 at once. J is compared while the crack runs, from the time on at which
-//! its domain has been crossed by waves, to 2.4 t_c. Cells are counted over half the height of the plate.
+//! Setup in [`super::stepped_plate`]. The crack rests until 1.5 t_c and then runs at 1500 m/s (0.51 c_R), by a guide
+//! with a schedule. Reference (Freund 1990): G = g(v) K_I²/E' with the K_I the resting crack would have, g = A_I k²;
+//! that is, J falls by the factor 0.5165 at once. J is compared while the crack runs, from the time on at which its
+//! domain has been crossed by waves, to 2.4 t_c. Cells are counted over half the height of the plate.
 
 use super::stepped_plate::SteppedPlate;
 use crate::case::{Case, Options};

@@ -1,8 +1,9 @@
 //! Slanted centre crack in a square plate under vertical tension, at rest: all slants on one grid.
 //!
-//! Half length a, plate 2b × 2b, a/b = 0.5, the crack turned by β from the horizontal, counter-clockwise. A grid that has a direction of its own would
-//! show in the errors growing with β. K_I and K_II are means over both tips, which see the same by symmetry.
-//! Reference: own finite element solution (as for the centre crack). Cells are counted along half the crack.
+//! Half length a, plate 2b × 2b, a/b = 0.5, the crack turned by β from the horizontal, counter-clockwise. A grid that
+//! has a direction of its own would show in the errors growing with β. K_I and K_II are means over both tips, which see
+//! the same by symmetry. Reference: own finite element solution (as for the centre crack). Cells are counted along half
+//! the crack.
 
 use super::{REST, offsets};
 use crate::case::{Case, Options};

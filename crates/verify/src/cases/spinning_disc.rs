@@ -1,7 +1,8 @@
 //! Stress in a spinning disc.
 //!
-//! Radius a, rim speed 0.5 % of c_d, spun up at once: the disc breathes about its stretched state, so stress is averaged over many breaths, with a window that falls
-//! to zero at both ends. Reference (closed form): σ_r + σ_t = ρω²/8 [2(3+ν) a² − 4(1+ν) r²] in plane stress; plane strain by ν → ν/(1−ν).
+//! Radius a, rim speed 0.5 % of c_d, spun up at once: the disc breathes about its stretched state, so stress is
+//! averaged over many breaths, with a window that falls to zero at both ends. Reference (closed form): σ_r + σ_t =
+//! ρω²/8 [2(3+ν) a² − 4(1+ν) r²] in plane stress; plane strain by ν → ν/(1−ν).
 //! Compared is its mean over the particles within a/2. Cells are counted over the radius.
 
 use crate::case::{Case, Options};

@@ -1,7 +1,8 @@
 //! Resting edge crack under a step of tension: K_I over time.
 //!
-//! Setup in [`super::stepped_plate`]. Reference: K_I = (2σ₀/(1−ν)) √(c_d (t−t_c)(1−2ν)/π) (Freund 1990), compared from 1.2 to 2.64 t_c; an own finite element
-//! solution of the same plate agrees with it to 0.3 % there. 40 cells are h = 0.05 m. Cells are counted over half the height of the plate.
+//! Setup in [`super::stepped_plate`]. Reference: K_I = (2σ₀/(1−ν)) √(c_d (t−t_c)(1−2ν)/π) (Freund 1990), compared from
+//! 1.2 to 2.64 t_c; an own finite element solution of the same plate agrees with it to 0.3 % there. 40 cells are h =
+//! 0.05 m. Cells are counted over half the height of the plate.
 
 use super::offsets;
 use super::stepped_plate::{SteppedPlate, TRACTION};

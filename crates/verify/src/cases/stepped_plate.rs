@@ -1,8 +1,9 @@
 //! The plate of the step load, the moving crack and the crack-tip equation of motion.
 //!
-//! 10 × 4 m, edge crack of 5 m near mid height, plane strain, E = 210 GPa, ν = 0.3, ρ = 8000 kg/m³ (Freund 1990; the usual test of dynamic fracture codes). A tension
-//! σ₀ steps up at t = 0 on the top edge; the bottom edge slides on rollers. Until the waves come back from the side edges, 2.64 t_c after the step, the crack
-//! is as good as alone in the plane. σ₀ is 5 MPa: strains of 1e-4, because the reference is linear; all stress intensities are in proportion.
+//! 10 × 4 m, edge crack of 5 m near mid height, plane strain, E = 210 GPa, ν = 0.3, ρ = 8000 kg/m³ (Freund 1990; the
+//! usual test of dynamic fracture codes). A tension σ₀ steps up at t = 0 on the top edge; the bottom edge slides on
+//! rollers. Until the waves come back from the side edges, 2.64 t_c after the step, the crack is as good as alone in
+//! the plane. σ₀ is 5 MPa: strains of 1e-4, because the reference is linear; all stress intensities are in proportion.
 
 use crate::problem::{Problem, material, rectangle};
 use fissure_scene::{BoxSide, Material, PlaneState, Selection};

@@ -1,8 +1,9 @@
 //! Strip with a centre crack under a step of tension at both ends (Chen 1975): K_I over time, waves and reflections.
 //!
-//! 20 × 40 mm, crack 2a = 4.8 mm across the middle, E = 200 GPa, ν = 0.3, ρ = 5000 kg/m³, plane strain. σ₀ is 4 MPa, because the reference is linear.
-//! Reference: own finite element solution (`assets/reference`); published finite difference and finite element peaks are 2.6 to 2.8. Compared until 11 µs:
-//! later on the crack closes. The peak is flat; its time is the middle of the interval in which K_I is above 95 % of it. Cells are counted across the width.
+//! 20 × 40 mm, crack 2a = 4.8 mm across the middle, E = 200 GPa, ν = 0.3, ρ = 5000 kg/m³, plane strain. σ₀ is 4 MPa,
+//! because the reference is linear. Reference: own finite element solution (`assets/reference`); published finite
+//! difference and finite element peaks are 2.6 to 2.8. Compared until 11 µs: later on the crack closes. The peak is
+//! flat; its time is the middle of the interval in which K_I is above 95 % of it. Cells are counted across the width.
 
 use super::offsets;
 use crate::case::{Case, Options};

@@ -1,11 +1,13 @@
-//! Beam with three holes (Ingraffea & Grigoriu 1990; Bittencourt et al. 1996), specimen II: the path of a crack past and into holes.
+//! Beam with three holes (Ingraffea & Grigoriu 1990; Bittencourt et al. 1996), specimen II: the path of a crack past
+//! and into holes.
 //!
-//! In inches of 0.0254 m: beam 20 × 8, supports at x = 1 and 19 below, load at (10, 8), holes of diameter 0.5 at x = 6, y = 2.75, 4.75, 6.75, notch of length 1 at
-//! x = 4. The path depends on the geometry alone; the material is PMMA in plane stress. The load is constant and 30 % above what starts the crack. The
-//! beam is brought to rest whenever the crack has grown by half a cell, so that the tip feels its load as if at rest.
+//! In inches of 0.0254 m: beam 20 × 8, supports at x = 1 and 19 below, load at (10, 8), holes of diameter 0.5 at x = 6,
+//! y = 2.75, 4.75, 6.75, notch of length 1 at x = 4. The path depends on the geometry alone; the material is PMMA in
+//! plane stress. The load is constant and 30 % above what starts the crack. The beam is brought to rest whenever the
+//! crack has grown by half a cell, so that the tip feels its load as if at rest.
 //!
-//! Reference: own finite element solution with increments of 0.12 (`assets/reference`): the crack enters the middle hole, as in the experiment. Cells are
-//! counted per inch.
+//! Reference: own finite element solution with increments of 0.12 (`assets/reference`): the crack enters the middle
+//! hole, as in the experiment. Cells are counted per inch.
 
 use super::REST;
 use crate::case::{Case, Options};

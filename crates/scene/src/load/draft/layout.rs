@@ -20,7 +20,8 @@ const FLATTENING: f64 = 1.0 / 2560.0;
 const NEAR: f64 = 0.5 / PARTICLES;
 /// Part of the way across a body that a notch takes where no crack is drawn.
 const NOTCH: f64 = 0.35;
-/// How far a notch reaches out of the body, in parts of the way across: the outline is flattened anew when it is loaded.
+/// How far a notch reaches out of the body, in parts of the way across: the outline is flattened anew when it is
+/// loaded.
 const OVERSHOOT: f64 = 0.01;
 
 /// Places and sizes, in metres and seconds.

@@ -1,5 +1,5 @@
-//! A scene made of a drawing alone: the names of its elements say what they are, a pull that makes the cracks run is added, and
-//! resolution and time come from the sizes drawn.
+//! A scene made of a drawing alone: the names of its elements say what they are, a pull that makes the cracks run is
+//! added, and resolution and time come from the sizes drawn.
 
 mod layout;
 mod pull;
@@ -78,8 +78,9 @@ fn digest(text: &str) -> String {
 
 /// A scene for the drawing at `drawing`; it refers to it by `reference`, which is relative to the folder of the scene.
 ///
-/// Elements, groups and layers whose id or label is `body`, `crack`, `guide` or `collider` are what they say. In a drawing that calls
-/// nothing a body, the only shape is one, with open lines beside it as cracks; where nothing has a name at all, everything is.
+/// Elements, groups and layers whose id or label is `body`, `crack`, `guide` or `collider` are what they say. In a
+/// drawing that calls nothing a body, the only shape is one, with open lines beside it as cracks; where nothing has a
+/// name at all, everything is.
 ///
 /// # Errors
 /// When the drawing cannot be read, or does not say what is what.

@@ -4,8 +4,8 @@ use crate::load::split::{Piece, pieces_inside};
 use crate::scene::Material;
 use fissure_plane::{Point, Region, Vector, bounds, polyline_length};
 
-/// The pull at its full is this many times what the crack needs to start, by the formula for a strip: enough for bodies that are no
-/// strips, and for cracks that run on without a stop.
+/// The pull at its full is this many times what the crack needs to start, by the formula for a strip: enough for bodies
+/// that are no strips, and for cracks that run on without a stop.
 pub(super) const SURPLUS: f64 = 2.5;
 /// A crack counts as no longer than this part of the strip, beyond which it would start by itself.
 const LONGEST: f64 = 0.7;
@@ -13,7 +13,8 @@ const LONGEST: f64 = 0.7;
 const MARGIN: f64 = 1e-3;
 /// Part of the body at each end, across the crack, that is pulled.
 const BAND: f64 = 0.15;
-/// Times that a wave takes through the body in which the pull grows to its full, so that it does not hit the body like a hammer.
+/// Times that a wave takes through the body in which the pull grows to its full, so that it does not hit the body like
+/// a hammer.
 const RISE: f64 = 6.0;
 /// The mean speed of a crack from its start, as a part of the Rayleigh wave speed.
 const CRACK_SPEED: f64 = 0.3;
@@ -38,8 +39,8 @@ pub(super) struct Pull {
 impl Pull {
     /// The pull that opens a crack, a piece of a line in `region`, across the way from its first to its last point.
     ///
-    /// The stress intensity is taken from a strip as wide as the body is on the average along the crack: of an edge crack
-    /// (Tada, Paris & Irwin: K = σ √(π a) F(a/W), exact to 0.5 %), or of a central one, half as long.
+    /// The stress intensity is taken from a strip as wide as the body is on the average along the crack: of an edge
+    /// crack (Tada, Paris & Irwin: K = σ √(π a) F(a/W), exact to 0.5 %), or of a central one, half as long.
     pub(super) fn across(crack: &Piece, region: &Region, material: &Material) -> Self {
         let chord = crack.points[crack.points.len() - 1] - crack.points[0];
         let along = level(chord.try_normalize(0.0).unwrap_or_else(Vector::x));
@@ -120,7 +121,8 @@ mod tests {
         assert!((edge_crack(0.5) - 2.83).abs() < 0.02);
     }
 
-    /// Truth: the construction, and similarity. Pulled apart across the crack, at any turn; ten times the size, a √10 times the force.
+    /// Truth: the construction, and similarity. Pulled apart across the crack, at any turn; ten times the size, a √10
+    /// times the force.
     #[test]
     fn the_pull_opens_the_crack() {
         let glass = material_preset("glass").unwrap();

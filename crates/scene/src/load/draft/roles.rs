@@ -33,8 +33,8 @@ pub(super) struct Named {
     pub(super) tag: String,
 }
 
-/// The elements that draw something, in the order of the drawing. A group that is called a body is one element, and so is one that is
-/// called something else and has one member; of other groups the members count.
+/// The elements that draw something, in the order of the drawing. A group that is called a body is one element, and so
+/// is one that is called something else and has one member; of other groups the members count.
 pub(super) fn elements(document: &Document<'_>) -> Vec<Named> {
     let mut found = Vec::new();
     document.root_element().children().for_each(|child| collect(child, None, &mut found));

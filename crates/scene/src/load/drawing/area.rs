@@ -79,7 +79,8 @@ impl Area {
 
     /// What any of the areas covers, joined where they share an edge but for a gap of at most `gap` [m].
     ///
-    /// Holes narrower than that, which are what is left of such gaps, are filled. None when there are too many such edges.
+    /// Holes narrower than that, which are what is left of such gaps, are filled. None when there are too many such
+    /// edges.
     pub(super) fn joined(areas: &[Self], gap: f64, grid: Grid) -> Option<Self> {
         let shapes = areas.iter().map(|area| area.rings().collect());
         let mut joined = Self::union_with(areas, &bridges(shapes, gap / grid.step)?);

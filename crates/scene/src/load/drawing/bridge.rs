@@ -1,7 +1,7 @@
 //! Shapes that are drawn side by side, joined along the edge they share.
 //!
-//! Two shapes that abut are each flattened and rounded by themselves, which leaves hair-thin gaps between them. Where an
-//! edge of one shape faces an edge of another closer than `reach`, the strip between them is added.
+//! Two shapes that abut are each flattened and rounded by themselves, which leaves hair-thin gaps between them. Where
+//! an edge of one shape faces an edge of another closer than `reach`, the strip between them is added.
 
 use super::area::GridPoint;
 use super::limits::MOST_STRIPS;
@@ -19,8 +19,8 @@ struct Edge {
     b: [f64; 2],
 }
 
-/// The strips between edges of different shapes that face each other within `reach` [grid steps], counter-clockwise; none
-/// when there are too many.
+/// The strips between edges of different shapes that face each other within `reach` [grid steps], counter-clockwise;
+/// none when there are too many.
 ///
 /// `shapes`: the rings of each, exteriors counter-clockwise, holes clockwise.
 pub(super) fn bridges<'a>(

@@ -142,7 +142,8 @@ fn count_numbers(value: &str, is_path: bool) -> Result<u64, String> {
     Ok(count)
 }
 
-/// The numbers in a value. Those in words and colours, such as `h2o` and `#1e99ff`, do not count; in path data letters are commands.
+/// The numbers in a value. Those in words and colours, such as `h2o` and `#1e99ff`, do not count; in path data letters
+/// are commands.
 fn numbers(value: &str, is_path: bool) -> impl Iterator<Item = &str> {
     let bytes = value.as_bytes();
     let mut at = 0;

@@ -66,7 +66,8 @@ fn expanded_size<'t>(
     size
 }
 
-/// Checks how many attributes the tags have: the parser compares them with each other, which takes the square of their number.
+/// Checks how many attributes the tags have: the parser compares them with each other, which takes the square of their
+/// number.
 fn check_tags(text: &str) -> Result<(), Excess> {
     let mut at = 0;
     while let Some(start) = text[at..].find('<').map(|i| at + i) {

@@ -73,7 +73,8 @@ fn cross([a, b]: &[GridPoint; 2], [c, d]: &[GridPoint; 2]) -> bool {
 /// A polyline and whether it is closed.
 pub(super) type Polyline = (Vec<Point>, bool);
 
-/// The subpaths of a path, flattened to `tolerance` [m], each with whether it is closed (by Z or by ending where it began).
+/// The subpaths of a path, flattened to `tolerance` [m], each with whether it is closed (by Z or by ending where it
+/// began).
 pub(super) fn flatten(path: &BezPath, tolerance: f64, budget: &mut Budget) -> Result<Vec<Polyline>, Complaint> {
     let tolerance = tolerance.max(FINEST * path.control_box().size().max_side());
     let mut lines: Vec<Polyline> = Vec::new();

@@ -1,9 +1,9 @@
 //! Outlines and lines from an SVG drawing.
 //!
-//! An element means what an SVG viewer shows of it, whatever its colour. Its area is what its fill covers by its own fill
-//! rule; an element without fill is the area of its stroke; a group is the union of what it holds. Clips apply. Only when
-//! nothing of an element can be seen does it count as if it were shown, and if it has no paint, as if it were filled.
-//! A line is the path of its element, whatever its paint.
+//! An element means what an SVG viewer shows of it, whatever its colour. Its area is what its fill covers by its own
+//! fill rule; an element without fill is the area of its stroke; a group is the union of what it holds. Clips apply.
+//! Only when nothing of an element can be seen does it count as if it were shown, and if it has no paint, as if it were
+//! filled. A line is the path of its element, whatever its paint.
 //!
 //! Curves come from usvg in single precision, about 1e-7 of the size of the drawing.
 
@@ -121,7 +121,8 @@ impl LoadedDrawing {
 
     /// The regions that element `name` covers, from left to right, curves flattened to `tolerance` [m].
     ///
-    /// They are simple and apart: places where outlines touch themselves are parted by a notch smaller than the tolerance.
+    /// They are simple and apart: places where outlines touch themselves are parted by a notch smaller than the
+    /// tolerance.
     pub(crate) fn regions(&self, name: &str, tolerance: f64) -> Result<Vec<Region>, Complaint> {
         let element = self.names.find(name)?;
         let place = |(message, remedy): Complaint| (format!("{}: {message}", self.names.place(name, element)), remedy);

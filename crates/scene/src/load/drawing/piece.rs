@@ -169,7 +169,8 @@ impl Tracing {
         Ok(area.intersection(&clip))
     }
 
-    /// The area that a clip leaves: what its shapes fill by their clip rules, within the clips that are on them and on it.
+    /// The area that a clip leaves: what its shapes fill by their clip rules, within the clips that are on them and on
+    /// it.
     fn clip_area(&mut self, clip: &usvg::ClipPath, to_metres: Affine) -> Result<Area, Complaint> {
         let key = (clip.id().to_owned(), to_metres.as_coeffs().map(f64::to_bits));
         if let Some(area) = self.clips.get(&key) {

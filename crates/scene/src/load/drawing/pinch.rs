@@ -1,8 +1,8 @@
 //! Rings that touch in a point, parted.
 //!
 //! Where rings pass a place more than once they do not cross there, but a region whose rings touch has no boundary that
-//! could be walked along. Every pass is cut short at one small distance from the place, all by the same: the new edges are
-//! chords of a circle around it, and since the passes do not cross, neither do their chords.
+//! could be walked along. Every pass is cut short at one small distance from the place, all by the same: the new edges
+//! are chords of a circle around it, and since the passes do not cross, neither do their chords.
 
 use fissure_plane::{Point, nearest_on_segment, orientation};
 use std::collections::HashMap;
@@ -10,7 +10,8 @@ use std::collections::HashMap;
 /// The part of the way to the nearest other corner or edge that a notch may take.
 const SHARE: f64 = 0.25;
 
-/// Parts all rings that touch in a corner, each corner by a notch of at most `notch` [m], and takes off corners on straight edges.
+/// Parts all rings that touch in a corner, each corner by a notch of at most `notch` [m], and takes off corners on
+/// straight edges.
 pub(super) fn part_touching_rings(shapes: &mut [Vec<Vec<Point>>], notch: f64) {
     let mut passes = HashMap::<_, usize>::new();
     shapes.iter().flatten().flatten().for_each(|p| *passes.entry(key(p)).or_default() += 1);
@@ -26,8 +27,8 @@ fn key(point: &Point) -> (u64, u64) {
     (point.x.to_bits(), point.y.to_bits())
 }
 
-/// Radius of the notch at each of the `pinches`, which are sorted by x: at most `notch`, and a part of the way to the nearest
-/// corner elsewhere and to the nearest edge that does not end there.
+/// Radius of the notch at each of the `pinches`, which are sorted by x: at most `notch`, and a part of the way to the
+/// nearest corner elsewhere and to the nearest edge that does not end there.
 fn radii(pinches: &[Point], shapes: &[Vec<Vec<Point>>], notch: f64) -> HashMap<(u64, u64), f64> {
     let reach = notch / SHARE;
     let mut room = vec![reach; pinches.len()];

@@ -52,7 +52,8 @@ impl Views {
     }
 }
 
-/// Resolves styles, references, shapes and text. Nothing outside of the text and the fonts is opened: pictures are left out.
+/// Resolves styles, references, shapes and text. Nothing outside of the text and the fonts is opened: pictures are left
+/// out.
 fn resolve(text: &str, fonts: &Fonts, view: View) -> Result<usvg::Tree, String> {
     let mut options = usvg::Options {
         style_sheet: Some(view.style_sheet()),

@@ -117,8 +117,8 @@ impl<'d> Resolver<'d> {
         Ok(())
     }
 
-    /// The bodies called `name`: one, or all parts of a drawing of several outlines; without a name all there are. A part
-    /// has a name of its own.
+    /// The bodies called `name`: one, or all parts of a drawing of several outlines; without a name all there are. A
+    /// part has a name of its own.
     pub(super) fn bodies(&self, path: KeyPath, name: Option<&str>, scene: &Scene) -> Resolved<Vec<usize>> {
         let Some(name) = name else { return Ok((0..scene.bodies.len()).collect()) };
         let drawn_as = |b: usize| self.document.body[self.origin.bodies[b]].name.as_str();

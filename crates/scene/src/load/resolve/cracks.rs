@@ -10,7 +10,8 @@ use crate::scene::*;
 use crate::validate::{Clock, no_tip, validate_schedule, validate_strength};
 use fissure_plane::Point;
 
-/// Crack ends this near to the outline or to another crack, in particle spacings, lie on it: twice what flattening may move it by.
+/// Crack ends this near to the outline or to another crack, in particle spacings, lie on it: twice what flattening may
+/// move it by.
 const MOUTH_TOLERANCE: f64 = 2.0 * super::FLATTENING;
 /// A guide this near to the tip or crack, in particle spacings, starts there or runs along it.
 const GUIDE_TOLERANCE: f64 = 0.5;

@@ -8,11 +8,11 @@ use fissure_plane::Region;
 const FEWEST_PARTICLES: f64 = 4.0;
 
 impl Resolver<'_> {
-    /// The parts of body `name` that have room for particles: at least one wide and high, and a few in all. What is left out
-    /// is told.
+    /// The parts of body `name` that have room for particles: at least one wide and high, and a few in all. What is
+    /// left out is told.
     ///
-    /// Crossing outlines leave crumbs that nobody drew on purpose. When all parts are that small, all stay, and the validation
-    /// says so.
+    /// Crossing outlines leave crumbs that nobody drew on purpose. When all parts are that small, all stay, and the
+    /// validation says so.
     pub(super) fn without_crumbs(&self, path: &KeyPath, name: &str, parts: Vec<Region>, spacing: f64) -> Vec<Region> {
         let is_crumb = |part: &Region| side(part) < spacing || part.area() < FEWEST_PARTICLES * spacing * spacing;
         let crumbs: Vec<&Region> = parts.iter().filter(|part| is_crumb(part)).collect();

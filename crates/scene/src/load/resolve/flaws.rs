@@ -8,7 +8,8 @@ use crate::scene::{Crack, Scene};
 use crate::validate::{DEGREES, DEGREES_APART, FLAW_DENSITY, ITEMS, LENGTH, SPREAD, outside, overlap};
 use fissure_plane::{Point, Region};
 
-/// Least distance of flaws from everything else, in cells, unless the scene says otherwise: what a tip needs around it to be measured.
+/// Least distance of flaws from everything else, in cells, unless the scene says otherwise: what a tip needs around it
+/// to be measured.
 const MARGIN: f64 = 2.0;
 /// Most flaws of one set: beyond it a density is a slip of the pen.
 const MOST_FLAWS: f64 = 10_000.0;

@@ -36,8 +36,8 @@ impl std::fmt::Display for Obstacle<'_> {
 }
 
 impl Resolver<'_> {
-    /// Warns of drawn tips with few cells between them and an outline, a hole or another drawn crack ahead. Flaws are not meant: they keep
-    /// their `margin`, and are strewn to meet.
+    /// Warns of drawn tips with few cells between them and an outline, a hole or another drawn crack ahead. Flaws are
+    /// not meant: they keep their `margin`, and are strewn to meet.
     pub(super) fn ligaments(&self, scene: &Scene) {
         let drawn = &scene.cracks[..self.origin.cracks.len()];
         for (i, crack) in drawn.iter().enumerate() {

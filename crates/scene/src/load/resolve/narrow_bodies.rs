@@ -5,11 +5,12 @@ use crate::fault::{KeyPath, Warning, short, show};
 use crate::scene::Scene;
 use fissure_plane::{NarrowKind, narrow_places};
 
-/// What is narrower than this, in particle spacings, is not seen as it is: it holds one row of particles or none, and its two sides
-/// share the nodes of the grid.
+/// What is narrower than this, in particle spacings, is not seen as it is: it holds one row of particles or none, and
+/// its two sides share the nodes of the grid.
 const FEWEST_SPACINGS: f64 = 2.0;
 
-/// What is narrower than this, in particle spacings, is a point in which parts touch: no spacing that anybody waits for resolves it.
+/// What is narrower than this, in particle spacings, is a point in which parts touch: no spacing that anybody waits for
+/// resolves it.
 const PINCH: f64 = 0.1;
 
 impl Resolver<'_> {

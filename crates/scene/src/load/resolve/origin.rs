@@ -11,7 +11,8 @@ pub(crate) struct Origin {
     pub(super) materials: Vec<Option<usize>>,
     /// For each patch of toughness of the scene: which `[[toughness]]` it comes from.
     pub(super) toughness: Vec<usize>,
-    /// For each drawn crack of the scene: which `[[crack]]` it is a piece of; the cracks of the scene after these were scattered.
+    /// For each drawn crack of the scene: which `[[crack]]` it is a piece of; the cracks of the scene after these were
+    /// scattered.
     pub(super) cracks: Vec<usize>,
     /// Whether the file has `frames.range` instead of `first` and `last`.
     pub(super) frames_by_range: bool,

@@ -5,7 +5,8 @@ use crate::fault::{KeyPath, Warning, short};
 use crate::scene::{Crack, Guide, Scene};
 use fissure_plane::polyline_length;
 
-/// Cells along a crack, at least: the integrals around a tip reach four cells far, and further back the crack has to be there as well.
+/// Cells along a crack, at least: the integrals around a tip reach four cells far, and further back the crack has to be
+/// there as well.
 const FEWEST_CELLS: f64 = 8.0;
 
 impl Resolver<'_> {

@@ -12,8 +12,8 @@ use fissure_plane::{Point, Vector, bounds};
 /// Factors that stand for black and white unless the scene says otherwise: a crack needs a 25th of the energy in black.
 const BLACK: f64 = 0.2;
 const WHITE: f64 = 1.0;
-/// Pixels smaller than this, in particle spacings, are averaged: stress is not known any finer, and the manifest of a take, which is
-/// written with every frame, keeps the image.
+/// Pixels smaller than this, in particle spacings, are averaged: stress is not known any finer, and the manifest of a
+/// take, which is written with every frame, keeps the image.
 const SMALLEST_PIXEL: f64 = 1.0;
 
 impl<'d> Resolver<'d> {
