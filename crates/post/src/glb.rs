@@ -5,23 +5,27 @@ use crate::packed::{PackedVertex, compact, pack};
 use crate::post::Provenance;
 use crate::source::Slot;
 use fissure_scene::UpAxis;
-use gltf_json::accessor::{ComponentType, GenericComponentType, Type};
-use gltf_json::buffer::Target;
-use gltf_json::material::{PbrBaseColorFactor, PbrMetallicRoughness, StrengthFactor};
-use gltf_json::mesh::{Mode, Primitive, Semantic};
-use gltf_json::validation::{Checked::Valid, USize64};
-use gltf_json::{Accessor, Asset, Buffer, Extras, Index, Material, Node, Root, Scene, Value, buffer, serialize};
+use gltf::binary::{Glb, Header};
+use gltf::json::accessor::{ComponentType, GenericComponentType, Type};
+use gltf::json::buffer::Target;
+use gltf::json::material::{PbrBaseColorFactor, PbrMetallicRoughness, StrengthFactor};
+use gltf::json::mesh::{Mode, Primitive, Semantic};
+use gltf::json::validation::{Checked::Valid, USize64};
+use gltf::json::{
+    self as json, Accessor, Asset, Buffer, Extras, Index, Material, Node, Root, Scene, Value, buffer, serialize,
+};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// The bytes of a GLB file with `meshes`.
 ///
-/// Attributes: `POSITION`, `NORMAL`, `TEXCOORD_0` and `_VELOCITY` [m/s]; points have no normals and texture coordinates.
-/// What a whole object has in common, its `piece`, is in the extras of its node. Materials: `outside` and `inside`,
-/// those that are used. `asset.extras` says where the file comes from. No meshes give a scene with one node without a mesh.
+/// Attributes: `POSITION`, `NORMAL`, `TEXCOORD_0` and `_VELOCITY` [m/s]; points have no normals and texture
+/// coordinates. What a whole object has in common, its `piece`, is in the extras of its node. Materials: `outside` and
+/// `inside`, those that are used. `asset.extras` says where the file comes from. No meshes give a scene with one node
+/// without a mesh.
 ///
-/// There is one custom attribute, and no second may be added: Blender 5.0.1 keeps them in a set without an order, takes one
-/// for another from primitive to primitive, and fails where their widths differ.
+/// There is one custom attribute, and no second may be added: Blender 5.0.1 keeps them in a set without an order, takes
+/// one for another from primitive to primitive, and fails where their widths differ.
 ///
 /// # Errors
 /// When the file would be larger than the 4 GiB of the format.
@@ -35,8 +39,8 @@ pub fn to_glb(meshes: &[Mesh], provenance: &Provenance) -> Result<Vec<u8>, GlbEr
     root.asset = asset(provenance)?;
     let has_meshes = !nodes.is_empty();
     if !has_meshes {
-        // Readers differ in what they make of a file without a scene or of a scene without nodes; three.js and the crate
-        // `gltf` fail. All of them know a node without a mesh.
+        // Readers differ in what they make of a file without a scene or of a scene without nodes; three.js and the
+        // crate `gltf` fail. All of them know a node without a mesh.
         nodes.push(root.push(Node { name: Some("nothing".to_owned()), ..Node::default() }));
     }
     let scene = Scene { extensions: None, extras: None, name: Some(provenance.scene.clone()), nodes };
@@ -56,7 +60,10 @@ pub enum GlbError {
     TooLarge(usize),
     /// The document could not be written as JSON.
     #[error("the glTF document cannot be written as JSON: {0}")]
-    Json(#[from] gltf_json::Error),
+    Json(#[from] json::Error),
+    /// The two could not be joined.
+    #[error("the glTF document and its data cannot be joined to a GLB file: {0}")]
+    Container(#[from] gltf::Error),
 }
 
 /// What a whole object has in common; importers make it properties of the object.
@@ -68,7 +75,7 @@ struct ObjectExtras {
 
 /// `value` as extras.
 fn extras(value: &impl Serialize) -> Result<Extras, GlbError> {
-    Ok(Some(gltf_json::deserialize::from_str(&serialize::to_string(value)?)?))
+    Ok(Some(json::deserialize::from_str(&serialize::to_string(value)?)?))
 }
 
 fn asset(provenance: &Provenance) -> Result<Asset, GlbError> {
@@ -90,7 +97,7 @@ impl Document {
         if primitives.is_empty() {
             return Ok(None);
         }
-        let mesh_index = self.root.push(gltf_json::Mesh {
+        let mesh_index = self.root.push(json::Mesh {
             extensions: None,
             extras: None,
             name: Some(mesh.name.clone()),
@@ -198,7 +205,7 @@ impl Document {
     }
 }
 
-type Attributes = BTreeMap<gltf_json::validation::Checked<Semantic>, Index<Accessor>>;
+type Attributes = BTreeMap<json::validation::Checked<Semantic>, Index<Accessor>>;
 
 fn primitive(attributes: Attributes) -> Primitive {
     Primitive {
@@ -230,21 +237,12 @@ fn material(slot: Slot) -> Material {
     }
 }
 
-/// Joins the two chunks of a GLB file, each padded to four bytes: JSON with spaces, binary with zeros.
-fn container(mut json: Vec<u8>, binary: Vec<u8>) -> Result<Vec<u8>, GlbError> {
-    json.resize(json.len().next_multiple_of(4), b' ');
-    let chunks = [(b"JSON", json), (b"BIN\0", binary)];
-    let used = || chunks.iter().filter(|(_, data)| !data.is_empty());
-    let length = 12 + used().map(|(_, data)| 8 + data.len()).sum::<usize>();
-    let total = u32::try_from(length).map_err(|_| GlbError::TooLarge(length))?;
-    let mut file = Vec::with_capacity(length);
-    file.extend(b"glTF");
-    file.extend(2_u32.to_le_bytes());
-    file.extend(total.to_le_bytes());
-    for (kind, data) in used() {
-        file.extend((data.len() as u32).to_le_bytes());
-        file.extend(*kind);
-        file.extend(data);
-    }
-    Ok(file)
+/// Joins the two chunks of a GLB file; one without `binary` has no second chunk.
+fn container(document: Vec<u8>, binary: Vec<u8>) -> Result<Vec<u8>, GlbError> {
+    let chunk = |data: &[u8]| if data.is_empty() { 0 } else { 8 + data.len().next_multiple_of(4) };
+    let length = 12 + chunk(&document) + chunk(&binary);
+    // `Glb::to_vec` lets lengths beyond 32 bits wrap around.
+    let length = u32::try_from(length).map_err(|_| GlbError::TooLarge(length))?;
+    let bin = (!binary.is_empty()).then_some(binary.into());
+    Ok(Glb { header: Header { magic: *b"glTF", version: 2, length }, json: document.into(), bin }.to_vec()?)
 }
