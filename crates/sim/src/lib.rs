@@ -9,6 +9,7 @@ mod error;
 mod faces;
 mod foresight;
 mod formulation;
+mod free_memory;
 mod grid;
 mod growth;
 mod material;
@@ -19,6 +20,7 @@ mod simulation;
 mod solver;
 #[cfg(test)]
 mod test_scenes;
+mod threads;
 mod tip;
 mod total;
 mod updated;

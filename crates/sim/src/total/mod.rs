@@ -265,7 +265,7 @@ impl Total {
             })
             .collect();
         let [force_x, force_y] = force;
-        let threads = rayon::current_num_threads();
+        let threads = crate::threads::current_num_threads();
         let part = if self.grid.len() >= PARALLEL_NODES && threads > 1 { PARALLEL_NODES / 4 } else { usize::MAX };
         // Two neighbouring rows of cells share a row of nodes: even rows first, then odd ones, each pass without a shared node. The order
         // of additions at a node is the same for any number of threads.

@@ -76,7 +76,7 @@ impl CellRows<'_> {
             let at = self.grid.row(middle).nodes.start;
             let (lower_x, upper_x) = force_x.split_at_mut(at - start);
             let (lower_y, upper_y) = force_y.split_at_mut(at - start);
-            rayon::join(
+            crate::threads::join(
                 || self.add_forces(rows.start..middle, start, [lower_x, lower_y]),
                 || self.add_forces(middle..rows.end, at, [upper_x, upper_y]),
             );

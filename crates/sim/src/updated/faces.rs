@@ -4,8 +4,8 @@ use super::Updated;
 use crate::crack::crossing::Side;
 use crate::crack::{Crack, slot};
 use crate::saved::{self, Fits};
+use crate::threads::prelude::*;
 use fissure_scene::{CrackEnd, CrackFrame, End, Matrix, OutlineFrame, Point, Vector};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// Where a crack is now. One entry per crack point in every list.

@@ -7,8 +7,8 @@ use crate::crack::division::CrossedSet;
 use crate::grid::kernel::{self, Stencil};
 use crate::grid::spans::{Span, SpanRows};
 use crate::grid::{Grid, Walker};
+use crate::threads::prelude::*;
 use fissure_scene::{Kernel, Point, Vector};
-use rayon::prelude::*;
 
 /// No particle, no field, no row.
 pub(super) const NONE: u32 = u32::MAX;

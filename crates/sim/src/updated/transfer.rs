@@ -12,8 +12,8 @@ use crate::SimulationError;
 use crate::boundary::collider::PlacedObstacle;
 use crate::grid::kernel;
 use crate::grid::{BAND, Walker, pieces};
+use crate::threads::prelude::*;
 use fissure_scene::{Kernel, Matrix, Transfer, Vector};
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// Particles that one task takes on the way back from the grid.
@@ -158,7 +158,7 @@ impl Updated {
     }
 
     fn is_parallel(&self) -> bool {
-        self.particles.len() >= PARALLEL_PARTICLES && rayon::current_num_threads() > 1
+        self.particles.len() >= PARALLEL_PARTICLES && crate::threads::current_num_threads() > 1
     }
 
     /// Every other band, with the nodes that its particles reach: none shares a node with another.
