@@ -34,7 +34,8 @@ pub(crate) trait Solver: std::fmt::Debug + Send {
     /// Largest stable time step for the present state [s].
     fn stable_time_step(&self) -> f64;
 
-    /// A bound from above of the same that is cheap to tell, for looks between the looks; none where there is none.
+    /// An upper bound of [`Solver::stable_time_step`] that costs little, to be asked at every step; none where only the
+    /// full computation can tell.
     fn moving_time_step(&self) -> Option<f64> {
         None
     }

@@ -28,7 +28,7 @@ pub(crate) struct Crack {
 /// A crack tip.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Tip {
-    /// Life.
+    /// Whether it rests, grows or has come to its end.
     pub(crate) state: TipState,
     /// Path to follow.
     pub(crate) guide: Option<GuideWalk>,
@@ -42,14 +42,14 @@ pub(crate) struct Tip {
     pub(crate) steps_to_look: u32,
     /// Crack length this tip has added so far [m].
     pub(crate) grown: f64,
-    /// [`Tip::run`] at the last frame [m].
+    /// What [`Tip::run`] was at the last frame [m].
     pub(crate) run_at_frame: f64,
     /// What was measured last.
     pub(crate) measured: Measured,
     /// Where the increment ends that the tip is on its way through; none between increments.
     pub(crate) target: Option<Point>,
-    /// What the tip has taken out of the body beyond what its growth costs [J/m], never negative; only so much of it
-    /// counts as the next way allows.
+    /// Energy that the tip has taken out of the body beyond the cost of its growth [J/m], never negative. It pays for
+    /// growth to come, but at most for a small part of a cell.
     pub(crate) balance: f64,
     /// Direction of growth asked for by the stress, averaged over the last moments; at rest, not normalised. Zero:
     /// nothing known.
@@ -99,7 +99,7 @@ impl Tip {
         self.guide.as_ref().map_or(Ok(()), GuideWalk::check)
     }
 
-    /// Takes up that the tip has grown by `length` [m].
+    /// Counts growth by `length` [m].
     pub(crate) fn take_up(&mut self, length: f64) {
         self.grown += length;
         self.since_division += length;

@@ -14,10 +14,11 @@ const MOST_INCREMENTS_PER_STEP: usize = 4;
 /// Part of an increment that a tip takes at once to give it its direction.
 const FIRST_PART: f64 = 1e-3;
 
-/// How far a tip may run ahead on what it has taken before, in cells: the release of the lattice is not quite even within a cell.
+/// The most energy that a tip may keep for later, as the length that it pays for, in cells. What the lattice releases
+/// per length varies within a cell: in one part of it a tip takes a little too much, in the next too little.
 const BALANCE_CELLS: f64 = 0.05;
 
-/// Ways shorter than this are not worth going, in cells.
+/// A tip stays where it is rather than move by less than this, in cells.
 const LEAST_SLIDE: f64 = 1e-12;
 
 /// Halvings of an increment in search of what a tip can pay: down to round-off, or scenes of another size would part.
@@ -89,7 +90,7 @@ impl Simulation {
     fn grow(&mut self, crack: usize, end: End, first: Measured, time: f64, time_step: f64) {
         let may_run = growth::speed_limit(&self.state.cracks[crack], end, &self.scene, &self.elastic, time) * time_step;
         if let Some(tip) = &mut self.state.cracks[crack].tips[slot(end)] {
-            // What is not used is lost, but for one step.
+            // A tip that waits may save up the way of one step and no more; it shall not leap later.
             tip.ahead_of_limit = (tip.ahead_of_limit - may_run).max(-may_run);
         }
         let mut measured = first;

@@ -3,8 +3,9 @@
 //! Nairn 2003, Guo & Nairn 2006 (thesis eq. 7–10): fields that overlap, (u_a − u_b)·n < 0 with n from below to above, and approach, (v_a − v_b)·n < 0, get
 //! the normal velocity of their centre of mass. Friction after Coulomb: the tangential impulse is at most μ times the normal one; an infinite μ sticks.
 //!
-//! Taken word for word, faces that meet sink into each other by what they go in one step, and stay there; faces that rub do so again and again, and hand on
-//! less and less of the pressure near a tip. Here fields may approach by what is left of their gap in the step, so that they meet and never overlap.
+//! As published, this lets faces that meet overlap by the way they go in one step, and stay so; faces that slide along
+//! each other overlap a little more with every step, and less and less pressure is passed on near a tip. Here two fields
+//! may approach in a step by as much as the gap between them, so that faces meet and never overlap.
 
 use super::Total;
 use super::refresh::Near;

@@ -71,26 +71,29 @@ pub(super) struct Ties {
     at_node: BTreeMap<u32, Coupled>,
 }
 
-/// Fields that are apart by less than this part of their displacement are so by round-off only: where a crack has just come, its faces still lie on each other.
+/// Displacements of two fields that differ by less than this part of their size differ by round-off only: the faces of a
+/// crack that has just come still lie on each other.
 const ROUND_OFF: f64 = 1e-12;
 /// How far ahead of the tip a node is where its tie begins to soften, in cells. Chosen with the four numbers below on a static edge crack of 8 cells in 64 places
 /// within a cell: K_I is off by −0.1 ± 0.2 %, at worst −0.5 %; at 16 cells by 0.0 ± 0.1 %, at worst 0.3 %.
 const BEGINS: f64 = 0.51;
-/// It has gone when the tip has moved on by so many cells. Over one cell statics are as good, but at half the Rayleigh wave speed more than a quarter of what
-/// is released stays as vibration.
+/// Way of the tip over which a tie softens from its full stiffness to none, in cells. For a crack at rest one cell would
+/// do as well, but at half the Rayleigh wave speed it leaves more than a quarter of what is released as vibration.
 const LENGTH: f64 = 2.0;
-/// Stiffness of a tie over s t/(1 − t)³ with s = 1/√(1/s₁² + 1/s₂²) of the stiffness s₁, s₂ [Pa] of its two fields.
+/// Stiffness of a tie divided by s (1 − t)³/t, where t is the part of it that is released and s = 1/√(1/s₁² + 1/s₂²) of
+/// the stiffness s₁, s₂ [Pa] of its two fields.
 const STIFFNESS: f64 = 0.49;
-/// Where t begins.
+/// The released part t of a tie that has not begun to soften.
 const FIRST_RELEASED: f64 = 0.02;
-/// Root of the inertia of a tie over its stiffness, over the time a wave takes for a cell. At ½, ω = 2c/h, no mode is faster than one of the lattice without
-/// ties; what is more makes ties ring lower and less. Root mean square error of K_I in `fissure verify step-load`, at worst: 1.1 % with 0.5, 0.93 % with
-/// this, 0.73 % with 0.8. Run of `fissure verify crack-motion` at 2.0 and 2.4 t_c: +13 and 0 %, +8 and −5 %, +2 and −9 %.
+/// √(m/k) of a tie with inertia m and stiffness k, divided by the time a wave takes for a cell. At ½, where ω = 2c/h, no
+/// mode is faster than one of the lattice without ties; with more, ties vibrate more slowly and less. Root mean square
+/// error of K_I in `fissure verify step-load`, at worst: 1.1 % with 0.5, 0.93 % with this, 0.73 % with 0.8. Length grown
+/// in `fissure verify crack-motion` at 2.0 and 2.4 t_c: +13 and 0 %, +8 and −5 %, +2 and −9 %.
 const INERTIA: f64 = 0.65;
 
-/// Drag of a tie over (1 − t)³/((1 − t)³ + t) of s times the time a wave takes for a cell. Run of the crack of
-/// `fissure verify crack-motion` at 2.4 t_c: −5 % with this, −6 % with two thirds of it; with an [`INERTIA`] of ½, −1 % with this, −7 % without and −5 % with
-/// twice as much.
+/// Drag of a tie divided by s (1 − t)³/((1 − t)³ + t) and by the time a wave takes for a cell. Length grown in
+/// `fissure verify crack-motion` at 2.4 t_c: −5 % with this, −6 % with two thirds of it; with an [`INERTIA`] of ½, −1 %
+/// with this, −7 % without and −5 % with twice as much.
 const DRAG: f64 = 0.73;
 
 /// Time in which misfits fall to 1/e, over the time a wave takes for a cell.

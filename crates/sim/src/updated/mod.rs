@@ -78,7 +78,8 @@ fn is_plastic(scene: &Scene) -> bool {
 }
 
 impl State {
-    /// Checks a state that was read against its scene, which has so many `particles`, and the cracks.
+    /// Checks a state that was read: that its numbers are finite, and that it fits the scene, its number of `particles`
+    /// and the cracks.
     fn check(&self, scene: &Scene, particles: usize, cracks: &[Crack]) -> Fits {
         let counts = [self.points.len(), self.affine.len(), self.plastic.len()];
         let expected =
