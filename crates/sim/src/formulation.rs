@@ -1,7 +1,7 @@
 //! Which formulation a scene gets, and why.
 
 use crate::SimulationError;
-use crate::crack::Crack;
+use crate::crack::cracks::Cracks;
 use crate::material::elastic::Elastic;
 use crate::particles::Particles;
 use crate::solver::{Handover, Solver};
@@ -113,7 +113,7 @@ pub(crate) fn build(
     formulation: Formulation,
     scene: &Scene,
     particles: Arc<Particles>,
-    cracks: &[Crack],
+    cracks: &Cracks,
 ) -> Result<Box<dyn Solver>, SimulationError> {
     Ok(match formulation {
         Formulation::Updated => Box::new(Updated::new(scene, particles, cracks)?),
@@ -128,7 +128,7 @@ pub(crate) fn build(
 pub(crate) fn switch(
     scene: &Scene,
     particles: Arc<Particles>,
-    cracks: &[Crack],
+    cracks: &Cracks,
     handover: Handover,
 ) -> Result<Box<dyn Solver>, SimulationError> {
     Ok(Box::new(Updated::take_over(scene, particles, cracks, handover)?))
@@ -142,7 +142,7 @@ pub(crate) fn restore(
     formulation: Formulation,
     scene: &Scene,
     particles: Arc<Particles>,
-    cracks: &[Crack],
+    cracks: &Cracks,
     state: &[u8],
 ) -> Result<Box<dyn Solver>, SimulationError> {
     Ok(match formulation {

@@ -1,9 +1,9 @@
 //! What the two formulations have in common: the questions the rest of the crate asks a solver.
 
 use crate::SimulationError;
-use crate::crack::Crack;
+use crate::crack::cracks::{Cracks, TipId};
 use crate::tip::zone::TipZone;
-use fissure_scene::{CrackFrame, End, Matrix, OutlineFrame, ParticleFrame, Point, Vector};
+use fissure_scene::{CrackFrame, Matrix, OutlineFrame, ParticleFrame, Point, Vector};
 
 /// Energies that only the solver knows, per unit thickness [J/m].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -46,7 +46,7 @@ pub(crate) trait Solver: std::fmt::Debug + Send {
     /// When the state is no longer finite or leaves the range of the formulation.
     fn step(
         &mut self,
-        cracks: &[Crack],
+        cracks: &Cracks,
         time: f64,
         time_step: f64,
         observe: &mut dyn FnMut(&dyn Observed),
@@ -58,8 +58,8 @@ pub(crate) trait Solver: std::fmt::Debug + Send {
     /// When it is no longer finite or has left the range of the formulation.
     fn check(&self, time: f64) -> Result<(), SimulationError>;
 
-    /// Takes up the cracks as they are now: `changed` (crack, end) have got new points at rest since the last call, or new ends.
-    fn recut(&mut self, cracks: &[Crack], changed: &[(usize, End)]);
+    /// Takes up the cracks as they are now: `changed` ends have got new points at rest since the last call, or new ends.
+    fn recut(&mut self, cracks: &Cracks, changed: &[TipId]);
 
     /// Whether tips can go a part of an increment; otherwise they jump from one to the next, and what follows here does nothing.
     fn slides(&self) -> bool {
@@ -67,17 +67,17 @@ pub(crate) trait Solver: std::fmt::Debug + Send {
     }
 
     /// What a tip would take out of the body if it went straight on now.
-    fn release(&self, _cracks: &[Crack], _crack: usize, _end: End) -> Release {
+    fn release(&self, _cracks: &Cracks, _id: TipId) -> Release {
         Box::new(|_| 0.0)
     }
 
     /// Energy that drag behind a tip has taken out of the body since the last call [J/m].
-    fn take_drag(&mut self, _crack: usize, _end: End) -> f64 {
+    fn take_drag(&mut self, _id: TipId) -> f64 {
         0.0
     }
 
-    /// Takes up that the last point of a crack at an end has moved on along its segment since the last recut, by an increment at most.
-    fn slide(&mut self, _cracks: &[Crack], _crack: usize, _end: End) {}
+    /// Takes up that an end has moved on along its segment since the last recut, by an increment at most.
+    fn slide(&mut self, _cracks: &Cracks, _id: TipId) {}
 
     /// The solver as one that can be observed between steps.
     fn observed(&self) -> &dyn Observed;
@@ -86,7 +86,7 @@ pub(crate) trait Solver: std::fmt::Debug + Send {
     fn kinetic_energy(&self) -> f64;
 
     /// The state for a solver of the other formulation to go on with; none where there is none.
-    fn hand_over(&mut self, cracks: &[Crack]) -> Option<Handover>;
+    fn hand_over(&mut self, cracks: &Cracks) -> Option<Handover>;
 
     /// Sets all velocities to zero.
     fn stop(&mut self);
@@ -111,7 +111,7 @@ pub(crate) trait Solver: std::fmt::Debug + Send {
     fn outline_frames(&self) -> Vec<OutlineFrame>;
 
     /// The cracks with both faces.
-    fn crack_frames(&self, cracks: &[Crack]) -> Vec<CrackFrame>;
+    fn crack_frames(&self, cracks: &Cracks) -> Vec<CrackFrame>;
 
     /// The whole state, for going on later.
     fn save(&self) -> Result<Vec<u8>, SimulationError>;
@@ -120,8 +120,8 @@ pub(crate) trait Solver: std::fmt::Debug + Send {
 /// A moment of a solver that can be looked at.
 pub(crate) trait Observed {
     /// The material within `radius` [m] of a tip.
-    fn tip_zone(&self, cracks: &[Crack], crack: usize, end: End, radius: f64) -> TipZone;
+    fn tip_zone(&self, cracks: &Cracks, id: TipId, radius: f64) -> TipZone;
 
     /// Current position of a tip [m] and the current direction ahead of it (unit vector).
-    fn tip_now(&self, cracks: &[Crack], crack: usize, end: End) -> (Point, Vector);
+    fn tip_now(&self, cracks: &Cracks, id: TipId) -> (Point, Vector);
 }

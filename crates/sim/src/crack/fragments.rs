@@ -3,7 +3,7 @@
 use crate::crack::Crack;
 use crate::crack::division::{CrackLine, Division, LineEnd, TipCut};
 use crate::particles::Particles;
-use fissure_scene::{CrackEnd, TipDivision};
+use fissure_scene::{CrackEnd, End, TipDivision};
 use std::collections::HashMap;
 
 /// Splits the fragments in `pieces` (one number per particle) where the cracks, at rest, have cut neighbours apart. A
@@ -17,7 +17,12 @@ pub(crate) fn split(particles: &Particles, cracks: &[Crack], cell_size: f64, pie
         .enumerate()
         .map(|(i, c)| {
             let end = |e: CrackEnd| if e == CrackEnd::Tip { LineEnd::Tip } else { LineEnd::Open(0.75 * s) };
-            CrackLine { crack: i as u32, points: c.points.clone(), start: end(c.ends[0]), end: end(c.ends[1]) }
+            CrackLine {
+                crack: i as u32,
+                points: c.points.clone(),
+                start: end(c.end(End::Start)),
+                end: end(c.end(End::End)),
+            }
         })
         .collect();
     let division = Division::new(&lines, TipDivision::LineCrossing, TipCut::PLAIN, cell_size, s, s / cell_size);

@@ -1,10 +1,12 @@
 //! Cracks while they live: where they run at rest, what their ends are, how far their tips have come.
 
+pub(crate) mod cracks;
 pub(crate) mod crossing;
 pub(crate) mod division;
 pub(crate) mod fragments;
 pub(crate) mod guide;
 
+use crate::crack::cracks::TipId;
 use crate::crack::division::{CrackLine, LineEnd};
 use crate::crack::guide::GuideWalk;
 use crate::saved::{self, Fits};
@@ -20,9 +22,9 @@ pub(crate) struct Crack {
     /// Points from start to end [m].
     pub(crate) points: Vec<Point>,
     /// What the first and the last point are.
-    pub(crate) ends: [CrackEnd; 2],
+    ends: [CrackEnd; 2],
     /// The tips at the first and the last point; none where the drawing has no live tip.
-    pub(crate) tips: [Option<Tip>; 2],
+    tips: [Option<Tip>; 2],
 }
 
 /// A crack tip.
@@ -140,7 +142,7 @@ fn subdivided(points: &[Point], longest: f64) -> Vec<Point> {
 }
 
 /// Position in a pair [start, end].
-pub(crate) fn slot(end: End) -> usize {
+fn slot(end: End) -> usize {
     match end {
         End::Start => 0,
         End::End => 1,
@@ -169,15 +171,8 @@ pub(crate) fn chord_start(points: &[Point], end: End, over: f64) -> Point {
     at(n - 1)
 }
 
-/// Both ends of a crack.
-pub(crate) const ENDS: [End; 2] = [End::Start, End::End];
-
 impl Crack {
-    /// The cracks of a scene.
-    pub(crate) fn of_scene(scene: &Scene) -> Vec<Self> {
-        scene.cracks.iter().map(|crack| Self::drawn(scene, crack)).collect()
-    }
-
+    /// The crack of a scene at its beginning.
     fn drawn(scene: &Scene, crack: &fissure_scene::Crack) -> Self {
         let region = &scene.bodies[crack.body].region;
         let tolerance = 1e-6 * scene.cell_size;
@@ -200,6 +195,39 @@ impl Crack {
             ends,
             tips: [tip(End::Start, crack.start_live), tip(End::End, crack.end_live)],
         }
+    }
+
+    /// A branch of the crack `trunk` that begins at it, with a tip at its end.
+    pub(crate) fn branch(trunk: usize, body: u32, points: Vec<Point>, tip: Tip) -> Self {
+        let ends = [CrackEnd::Junction { crack: trunk as u32 }, CrackEnd::Tip];
+        Self { body, points, ends, tips: [None, Some(tip)] }
+    }
+
+    /// The tip at an end; none where the drawing has no live tip.
+    pub(crate) fn tip(&self, end: End) -> Option<&Tip> {
+        self.tips[slot(end)].as_ref()
+    }
+
+    fn tip_mut(&mut self, end: End) -> Option<&mut Tip> {
+        self.tips[slot(end)].as_mut()
+    }
+
+    fn tips_mut(&mut self) -> impl Iterator<Item = &mut Tip> {
+        self.tips.iter_mut().flatten()
+    }
+
+    /// What is at an end: a tip, a mouth, another crack.
+    pub(crate) fn end(&self, end: End) -> CrackEnd {
+        self.ends[slot(end)]
+    }
+
+    fn set_end(&mut self, end: End, kind: CrackEnd) {
+        self.ends[slot(end)] = kind;
+    }
+
+    /// Whether the crack begins or ends on the crack number `other`.
+    pub(crate) fn is_joined_to(&self, other: usize) -> bool {
+        self.ends.contains(&CrackEnd::Junction { crack: other as u32 })
     }
 
     /// Checks a crack that was read, one of `count`, against its scene.
@@ -248,7 +276,7 @@ impl Crack {
     }
 
     /// Adds a point at an end.
-    pub(crate) fn push(&mut self, end: End, point: Point) {
+    fn push(&mut self, end: End, point: Point) {
         match end {
             End::Start => self.points.insert(0, point),
             End::End => self.points.push(point),
@@ -256,7 +284,7 @@ impl Crack {
     }
 
     /// Moves the point of an end.
-    pub(crate) fn move_end(&mut self, end: End, to: Point) {
+    fn move_end(&mut self, end: End, to: Point) {
         let last = self.points.len() - 1;
         self.points[if end == End::Start { 0 } else { last }] = to;
     }
@@ -284,20 +312,13 @@ impl Crack {
 
     /// The record of a tip for a frame; `position` [m] and `direction` [rad] are the current ones, `interval` [s] the
     /// time since the last frame.
-    pub(crate) fn record(
-        &self,
-        crack: usize,
-        end: End,
-        position: Point,
-        direction: f64,
-        interval: f64,
-    ) -> Option<TipRecord> {
-        let tip = self.tips[slot(end)].as_ref()?;
+    pub(crate) fn record(&self, id: TipId, position: Point, direction: f64, interval: f64) -> Option<TipRecord> {
+        let tip = self.tip(id.end)?;
         let m = tip.measured;
         let speed = if interval > 0.0 { (tip.run() - tip.run_at_frame) / interval } else { 0.0 };
         Some(TipRecord {
-            crack: crack as u32,
-            end,
+            crack: id.crack as u32,
+            end: id.end,
             state: tip.state,
             position,
             direction,

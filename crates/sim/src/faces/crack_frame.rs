@@ -1,6 +1,7 @@
 //! A crack as a frame holds it.
 
-use crate::crack::{Crack, ENDS, slot};
+use crate::crack::Crack;
+use crate::crack::cracks::ENDS;
 use fissure_scene::{CrackEnd, CrackFrame, End, Point, Vector};
 
 /// The frame of a crack from the places and velocities of its faces, above and below; they meet at a tip.
@@ -13,7 +14,7 @@ pub(crate) fn crack_frame(
     let [mut above, mut below] = faces;
     let [mut above_velocity, mut below_velocity] = velocities;
     for end in ENDS {
-        if crack.ends[slot(end)] == CrackEnd::Tip {
+        if crack.end(end) == CrackEnd::Tip {
             let k = if end == End::Start { 0 } else { above.len() - 1 };
             let middle = nalgebra::center(&above[k], &below[k]);
             let velocity = (above_velocity[k] + below_velocity[k]) * 0.5;
@@ -29,7 +30,7 @@ pub(crate) fn crack_frame(
         below,
         above_velocity,
         below_velocity,
-        start: crack.ends[0],
-        end: crack.ends[1],
+        start: crack.end(End::Start),
+        end: crack.end(End::End),
     }
 }

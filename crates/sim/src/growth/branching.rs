@@ -6,9 +6,10 @@
 use super::heading::turned;
 use super::obstacle::first_obstacle;
 use super::{LAST_LIGAMENT, way};
-use crate::crack::{Crack, Measured, slot};
+use crate::crack::Measured;
+use crate::crack::cracks::{Cracks, TipId};
 use crate::material::elastic::Elastic;
-use fissure_scene::{End, Point, Scene};
+use fissure_scene::{Point, Scene};
 
 /// Length of new branches, in cells. At the default angle their tips are then 3.6 cells apart: each has the smallest radius of an integral for itself.
 /// With 2 cells each tip feels the faces of the other, and the branches turn back and meet.
@@ -16,32 +17,30 @@ const FIRST_LENGTH: f64 = 4.0;
 
 /// The points of the two branches of a tip, from the tip on and without it, left and right as seen along the crack; none when the tip does not divide.
 pub(crate) fn branches(
-    cracks: &[Crack],
-    index: usize,
-    end: End,
+    cracks: &Cracks,
+    id: TipId,
     measured: &Measured,
     scene: &Scene,
     elastic: &[Elastic],
 ) -> Option<[Vec<Point>; 2]> {
     let branching = scene.growth.branching?;
-    let crack = &cracks[index];
-    let tip = crack.tips[slot(end)].as_ref()?;
-    let from = crack.tip_position(end);
-    let body = &scene.bodies[crack.body as usize];
+    let tip = cracks.tip(id)?;
+    let from = cracks.position(id);
+    let body = &scene.bodies[cracks.of(id).body as usize];
     let modulus = elastic[body.material_at(from)].effective_modulus;
     let enough = branching.release_ratio * measured.fracture_toughness * measured.fracture_toughness / modulus;
     let follows_exactly = tip.guide.as_ref().is_some_and(|g| g.strength() >= 1.0);
     if follows_exactly || measured.j_integral < enough || tip.since_division < branching.spacing {
         return None;
     }
-    let toward = way(crack, end, measured, scene);
+    let toward = way(cracks, id, measured, scene);
     let h = scene.cell_size;
     let step = scene.growth.increment * h;
     let count = (FIRST_LENGTH * h / step).ceil() as usize;
     let branch = |angle: f64| {
         let along = turned(toward, angle);
         let clear = from + along * (count as f64 * step + LAST_LIGAMENT * h);
-        first_obstacle(cracks, index, end, &body.region, from, clear)
+        first_obstacle(cracks, id, &body.region, from, clear)
             .is_none()
             .then(|| (1..=count).map(|k| from + along * (step * k as f64)).collect::<Vec<Point>>())
     };

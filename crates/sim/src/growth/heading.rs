@@ -1,6 +1,7 @@
 //! Where a tip wants to go: by the stress, by a drawn path, or by both.
 
-use crate::crack::{Crack, DIRECTION_LENGTH, Measured, slot};
+use crate::crack::cracks::{Cracks, TipId};
+use crate::crack::{DIRECTION_LENGTH, Measured};
 use crate::material::elastic::Elastic;
 use crate::tip::gauge::KINK;
 use fissure_scene::{End, Scene, TipState, Vector};
@@ -9,8 +10,8 @@ use fissure_scene::{End, Scene, TipState, Vector};
 const HEADING_CELLS: f64 = 2.0;
 
 /// The direction that the stress asks for now: unit vector, at rest.
-fn asked(crack: &Crack, end: End, measured: &Measured, scene: &Scene) -> Vector {
-    turned(crack.ahead(end, DIRECTION_LENGTH * scene.cell_size), measured.kink_angle)
+fn asked(cracks: &Cracks, id: TipId, measured: &Measured, scene: &Scene) -> Vector {
+    turned(cracks.ahead(id, DIRECTION_LENGTH * scene.cell_size), measured.kink_angle)
 }
 
 /// `vector` turned counter-clockwise by `angle` [rad].
@@ -24,19 +25,19 @@ pub(super) fn turned(vector: Vector, angle: f64) -> Vector {
 /// Every increment sends out waves, and the ratio of the modes swings with them at a period that is the lattice's, not the body's. A running tip follows
 /// the mean over the time that a shear wave takes for a few cells; a resting one has no waves of its own and starts as the stress is.
 pub(crate) fn heading(
-    crack: &Crack,
-    end: End,
+    cracks: &Cracks,
+    id: TipId,
     measured: &Measured,
     scene: &Scene,
     elastic: &[Elastic],
     time_step: f64,
 ) -> Vector {
-    let now = asked(crack, end, measured, scene);
-    let Some(tip) = &crack.tips[slot(end)] else { return now };
+    let now = asked(cracks, id, measured, scene);
+    let Some(tip) = cracks.tip(id) else { return now };
     if tip.state != TipState::Growing || tip.heading == Vector::zeros() {
         return now;
     }
-    if let Some(direction) = after_kink(crack, end, DIRECTION_LENGTH * scene.cell_size) {
+    if let Some(direction) = after_kink(cracks, id, DIRECTION_LENGTH * scene.cell_size) {
         return direction;
     }
     let slowest = elastic.iter().map(Elastic::shear_wave_speed).fold(f64::INFINITY, f64::min);
@@ -48,11 +49,12 @@ pub(crate) fn heading(
 ///
 /// What is measured around such a tip is still the field of the crack before the kink, seen along a chord that has turned by a part of it. A crack that follows
 /// it turns on: under pure shear from 70 to 92° within the first cell and a half, whatever the size of the cells, before it comes back to 73°.
-fn after_kink(crack: &Crack, end: End, over: f64) -> Option<Vector> {
-    let n = crack.points.len();
-    let at = |k: usize| if end == End::Start { crack.points[k] } else { crack.points[n - 1 - k] };
+fn after_kink(cracks: &Cracks, id: TipId, over: f64) -> Option<Vector> {
+    let points = &cracks.of(id).points;
+    let n = points.len();
+    let at = |k: usize| if id.end == End::Start { points[k] } else { points[n - 1 - k] };
     // On its way through an increment the tip may have gone too little of it for a direction.
-    let tip = crack.tips[slot(end)].as_ref().and_then(|t| t.target).unwrap_or(at(0));
+    let tip = cracks.tip(id).and_then(|t| t.target).unwrap_or(at(0));
     let (mut ahead, mut way) = (tip - at(1), (at(0) - at(1)).norm());
     let direction = ahead.try_normalize(0.0)?;
     for k in 2..n {
@@ -69,16 +71,16 @@ fn after_kink(crack: &Crack, end: End, over: f64) -> Option<Vector> {
 }
 
 /// The direction a tip would take without a guide (unit vector, at rest).
-pub(super) fn physical_way(crack: &Crack, end: End, measured: &Measured, scene: &Scene) -> Vector {
-    let tip = crack.tips[slot(end)].as_ref();
-    tip.and_then(|t| t.heading.try_normalize(0.0)).unwrap_or_else(|| asked(crack, end, measured, scene))
+pub(super) fn physical_way(cracks: &Cracks, id: TipId, measured: &Measured, scene: &Scene) -> Vector {
+    let tip = cracks.tip(id);
+    tip.and_then(|t| t.heading.try_normalize(0.0)).unwrap_or_else(|| asked(cracks, id, measured, scene))
 }
 
 /// The direction a tip takes (unit vector, at rest): its heading, turned to what is weak, then towards its guide by the strength of the guide.
-pub(super) fn way(crack: &Crack, end: End, measured: &Measured, scene: &Scene) -> Vector {
-    let physical = super::seeking::seek(crack, end, physical_way(crack, end, measured, scene), scene);
-    let Some(guide) = crack.tips[slot(end)].as_ref().and_then(|t| t.guide.as_ref()) else { return physical };
-    match guide.drawn_direction(crack.tip_position(end), DIRECTION_LENGTH * scene.cell_size) {
+pub(super) fn way(cracks: &Cracks, id: TipId, measured: &Measured, scene: &Scene) -> Vector {
+    let physical = super::seeking::seek(cracks, id, physical_way(cracks, id, measured, scene), scene);
+    let Some(guide) = cracks.tip(id).and_then(|t| t.guide.as_ref()) else { return physical };
+    match guide.drawn_direction(cracks.position(id), DIRECTION_LENGTH * scene.cell_size) {
         Some(drawn) => turned(physical, guide.strength() * physical.perp(&drawn).atan2(physical.dot(&drawn))),
         None => physical,
     }

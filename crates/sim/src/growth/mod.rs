@@ -18,9 +18,10 @@ pub(crate) use heading::heading;
 pub(crate) use seeking::toughness_at;
 pub(crate) use speed::speed_limit;
 
-use crate::crack::{Crack, DIRECTION_LENGTH, Measured, slot};
+use crate::crack::cracks::{Cracks, TipId};
+use crate::crack::{DIRECTION_LENGTH, Measured};
 use crate::tip::gauge::Reading;
-use fissure_scene::{CrackEnd, End, Point, Scene, TipState, Vector};
+use fissure_scene::{CrackEnd, Point, Scene, TipState, Vector};
 use heading::{physical_way, way};
 use obstacle::{beside, first_obstacle};
 
@@ -57,14 +58,14 @@ pub(crate) fn judge(reading: &Reading, scene: &Scene) -> Measured {
 
 /// Whether a tip grows at `time` [s], given what was measured. `slides`: it can also go a part of an increment.
 pub(crate) fn wants_to_grow(
-    crack: &Crack,
-    end: End,
+    cracks: &Cracks,
+    id: TipId,
     measured: &Measured,
     scene: &Scene,
     time: f64,
     slides: bool,
 ) -> bool {
-    let Some(tip) = &crack.tips[slot(end)] else { return false };
+    let Some(tip) = cracks.tip(id) else { return false };
     if !scene.growth.enabled || !tip.state.is_live() {
         return false;
     }
@@ -74,27 +75,27 @@ pub(crate) fn wants_to_grow(
     }
     // NaN compares false: nothing known, no growth.
     let needed = measured.fracture_toughness;
-    equivalent(crack, end, measured, scene) >= needed && needed > 0.0
+    equivalent(cracks, id, measured, scene) >= needed && needed > 0.0
 }
 
 /// Fracture toughness of what the next increment would break [Pa·√m]: of what lies in its middle, in the direction the tip takes.
-pub(crate) fn toughness_ahead(crack: &Crack, end: End, measured: &Measured, scene: &Scene) -> f64 {
+pub(crate) fn toughness_ahead(cracks: &Cracks, id: TipId, measured: &Measured, scene: &Scene) -> f64 {
     let half = 0.5 * scene.growth.increment * scene.cell_size;
-    toughness_at(crack, crack.tip_position(end) + way(crack, end, measured, scene) * half, scene)
+    toughness_at(cracks.of(id), cracks.position(id) + way(cracks, id, measured, scene) * half, scene)
 }
 
 /// K_eq [Pa·√m] for the direction the tip would take: what was measured for the physical direction, times how much less that one gets of it.
-fn equivalent(crack: &Crack, end: End, measured: &Measured, scene: &Scene) -> f64 {
-    let guide = crack.tips[slot(end)].as_ref().and_then(|t| t.guide.as_ref());
+fn equivalent(cracks: &Cracks, id: TipId, measured: &Measured, scene: &Scene) -> f64 {
+    let guide = cracks.tip(id).and_then(|t| t.guide.as_ref());
     let has_guide = guide.is_some_and(|g| g.strength() > 0.0);
-    if !has_guide && !seeking::is_varied(crack, scene) {
+    if !has_guide && !seeking::is_varied(cracks.of(id), scene) {
         return measured.equivalent;
     }
-    let ahead = crack.ahead(end, DIRECTION_LENGTH * scene.cell_size);
+    let ahead = cracks.ahead(id, DIRECTION_LENGTH * scene.cell_size);
     let split = crate::StressIntensity { mode_1: measured.mode_1.max(0.0), mode_2: measured.mode_2 };
     let along = |toward: Vector| split.equivalent(ahead.perp(&toward).atan2(ahead.dot(&toward)));
-    let own = along(physical_way(crack, end, measured, scene));
-    if own > 0.0 { measured.equivalent * along(way(crack, end, measured, scene)) / own } else { 0.0 }
+    let own = along(physical_way(cracks, id, measured, scene));
+    if own > 0.0 { measured.equivalent * along(way(cracks, id, measured, scene)) / own } else { 0.0 }
 }
 
 /// What a way of a tip costs.
@@ -108,30 +109,22 @@ pub(crate) enum Cost {
 
 /// What growth costs a tip. In energy: of what is released now, the part that is needed. K_eq² goes with the energy that is released, whatever the mode
 /// and the direction, so at K_eq = K_c this is all of it, and in mode I it is always K_c²/E'.
-pub(crate) fn cost(crack: &Crack, end: End, measured: &Measured, scene: &Scene, time: f64) -> Cost {
-    let tip = crack.tips[slot(end)].as_ref();
+pub(crate) fn cost(cracks: &Cracks, id: TipId, measured: &Measured, scene: &Scene, time: f64) -> Cost {
+    let tip = cracks.tip(id);
     if let Some(due) = tip.and_then(|t| t.guide.as_ref()?.due(t.grown, time)) {
         return Cost::Scheduled(due.length);
     }
-    let part = measured.fracture_toughness / equivalent(crack, end, measured, scene);
+    let part = measured.fracture_toughness / equivalent(cracks, id, measured, scene);
     Cost::Energy(measured.released * part * part)
 }
 
 /// The next increment of a tip that wants to grow.
-pub(crate) fn advance(
-    cracks: &[Crack],
-    index: usize,
-    end: End,
-    measured: &Measured,
-    scene: &Scene,
-    time: f64,
-) -> Option<Advance> {
-    let crack = &cracks[index];
-    let tip = crack.tips[slot(end)].as_ref()?;
+pub(crate) fn advance(cracks: &Cracks, id: TipId, measured: &Measured, scene: &Scene, time: f64) -> Option<Advance> {
+    let tip = cracks.tip(id)?;
     let h = scene.cell_size;
     let mut step = scene.growth.increment * h;
-    let from = crack.tip_position(end);
-    let region = &scene.bodies[crack.body as usize].region;
+    let from = cracks.position(id);
+    let region = &scene.bodies[cracks.of(id).body as usize].region;
     // A schedule ends where it says, even within an increment.
     if let Some(due) = tip.guide.as_ref().and_then(|g| g.due(tip.grown, time)).filter(|due| due.is_last) {
         step = step.min(due.length);
@@ -144,7 +137,7 @@ pub(crate) fn advance(
         let pieces = (LAST_LIGAMENT / scene.growth.increment).ceil() as usize;
         for piece in 1..=pieces + 1 {
             let (next, _) = guide.ahead(step * piece as f64);
-            if let Some(hit) = first_obstacle(cracks, index, end, region, last, next) {
+            if let Some(hit) = first_obstacle(cracks, id, region, last, next) {
                 points.truncate(0);
                 points.extend((1..piece).map(|k| guide.ahead(step * k as f64).0));
                 return Some(hit.finish(points, from));
@@ -158,12 +151,12 @@ pub(crate) fn advance(
         let state = if ended { TipState::GuideEnded } else { TipState::Growing };
         return Some(Advance { points, end: CrackEnd::Tip, state });
     }
-    let toward = way(crack, end, measured, scene);
-    if let Some(hit) = first_obstacle(cracks, index, end, region, from, from + toward * (step + LAST_LIGAMENT * h)) {
+    let toward = way(cracks, id, measured, scene);
+    if let Some(hit) = first_obstacle(cracks, id, region, from, from + toward * (step + LAST_LIGAMENT * h)) {
         return Some(hit.finish(Vec::new(), from));
     }
-    if let Some(near) = beside(cracks, index, end, toward, h)
-        && let Some(hit) = first_obstacle(cracks, index, end, region, from, near + (near - from) * 0.01)
+    if let Some(near) = beside(cracks, id, toward, h)
+        && let Some(hit) = first_obstacle(cracks, id, region, from, near + (near - from) * 0.01)
     {
         return Some(hit.finish(Vec::new(), from));
     }

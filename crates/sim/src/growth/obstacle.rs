@@ -1,7 +1,8 @@
 //! What stands in the way of a tip: the rings of its body and other cracks. A tip ends exactly on them.
 
 use super::{Advance, LAST_LIGAMENT};
-use crate::crack::{Crack, ENDS, slot};
+use crate::crack::Crack;
+use crate::crack::cracks::{Cracks, ENDS, TipId};
 use fissure_plane::{Point, Region, Vector, nearest_on_segment, orientation, segments_touch};
 use fissure_scene::{CrackEnd, End, TipState};
 
@@ -31,14 +32,7 @@ impl Obstacle {
 }
 
 /// The first ring or crack on the way from `from` to `to`.
-pub(super) fn first_obstacle(
-    cracks: &[Crack],
-    index: usize,
-    end: End,
-    region: &Region,
-    from: Point,
-    to: Point,
-) -> Option<Obstacle> {
+pub(super) fn first_obstacle(cracks: &Cracks, id: TipId, region: &Region, from: Point, to: Point) -> Option<Obstacle> {
     let mut nearest: Option<(f64, Obstacle)> = None;
     let mut consider = |a: Point, b: Point, what: CrackEnd| {
         if let Some((t, at)) = intersection(from, to, a, b)
@@ -53,13 +47,13 @@ pub(super) fn first_obstacle(
         }
     }
     for (other, crack) in cracks.iter().enumerate() {
-        if crack.body != cracks[index].body {
+        if crack.body != cracks.of(id).body {
             continue;
         }
         let n = crack.points.len();
         for k in 1..n {
             // Not the segment the tip itself stands on.
-            let own = other == index && if end == End::End { k + 1 == n } else { k == 1 };
+            let own = other == id.crack && if id.end == End::End { k + 1 == n } else { k == 1 };
             if !own {
                 consider(crack.points[k - 1], crack.points[k], CrackEnd::Junction { crack: other as u32 });
             }
@@ -71,34 +65,31 @@ pub(super) fn first_obstacle(
 /// The place to end for a tip beside another crack, or beside an older part of its own, nearer than a last ligament; none when there is no such crack.
 ///
 /// Two cracks side by side within a cell leave a strip that the grid does not resolve, of fields with next to no mass; a real one breaks.
-pub(super) fn beside(cracks: &[Crack], index: usize, end: End, toward: Vector, h: f64) -> Option<Point> {
-    let crack = &cracks[index];
-    let from = crack.tip_position(end);
-    let own_tip = crack.tips[slot(end)].as_ref()?;
+pub(super) fn beside(cracks: &Cracks, id: TipId, toward: Vector, h: f64) -> Option<Point> {
+    let crack = cracks.of(id);
+    let from = cracks.position(id);
+    let own_tip = cracks.tip(id)?;
     // A branch begins beside its twin.
     let has_parted = own_tip.grown.min(own_tip.since_division) >= PARTED * h;
-    let is_twin = |other: usize, line: &Crack| {
-        crack.ends.contains(&CrackEnd::Junction { crack: other as u32 })
-            || line.ends.contains(&CrackEnd::Junction { crack: index as u32 })
-    };
+    let is_twin = |other: usize, line: &Crack| crack.is_joined_to(other) || line.is_joined_to(id.crack);
     let mut nearest: Option<(f64, Point)> = None;
     // Of two tips side by side only one ends on the other.
     let ended_here = |c: &Crack| {
-        let met = |end: End| c.tips[slot(end)].as_ref().is_some_and(|t| t.state == TipState::MetCrack);
-        ENDS.into_iter().any(|end| met(end) && c.ends[slot(end)] == CrackEnd::Junction { crack: index as u32 })
+        let met = |end: End| c.tip(end).is_some_and(|t| t.state == TipState::MetCrack);
+        ENDS.into_iter().any(|end| met(end) && c.end(end) == CrackEnd::Junction { crack: id.crack as u32 })
     };
     for (other, line) in cracks.iter().enumerate().filter(|(_, c)| c.body == crack.body && !ended_here(c)) {
-        if !has_parted && other != index && is_twin(other, line) {
+        if !has_parted && other != id.crack && is_twin(other, line) {
             continue;
         }
         let n = line.points.len();
         let mut behind = 0.0;
         for j in 1..n {
             // From the tip back along the own crack.
-            let k = if other == index && end == End::End { n - j } else { j };
+            let k = if other == id.crack && id.end == End::End { n - j } else { j };
             let (a, b) = (line.points[k - 1], line.points[k]);
             behind += (b - a).norm();
-            if other == index && behind < PARTED * h {
+            if other == id.crack && behind < PARTED * h {
                 continue;
             }
             let at = nearest_on_segment(a, b, from);

@@ -2,7 +2,8 @@
 
 use super::criterion::share_beside;
 use crate::crack::Crack;
-use fissure_scene::{End, Point, Scene, Vector};
+use crate::crack::cracks::{Cracks, TipId};
+use fissure_scene::{Point, Scene, Vector};
 
 /// Directions are looked at up to this many steps to either side of the one the stress asks for ...
 const STEPS: i32 = 12;
@@ -25,11 +26,12 @@ pub(crate) fn toughness_at(crack: &Crack, place: Point, scene: &Scene) -> f64 {
 /// The direction (unit vector, at rest) with the highest ratio of hoop stress to toughness, for a tip that the stress opens along `physical`.
 ///
 /// Of equal ratios the one nearest to `physical` is taken, so that a toughness that is the same all around changes nothing.
-pub(super) fn seek(crack: &Crack, end: End, physical: Vector, scene: &Scene) -> Vector {
+pub(super) fn seek(cracks: &Cracks, id: TipId, physical: Vector, scene: &Scene) -> Vector {
+    let crack = cracks.of(id);
     if !is_varied(crack, scene) {
         return physical;
     }
-    let from = crack.tip_position(end);
+    let from = cracks.position(id);
     let ratio = |angle: f64| {
         let along = super::heading::turned(physical, angle) * (REACH * scene.cell_size);
         let toughness = toughness_at(crack, from + 0.5 * along, scene) + toughness_at(crack, from + along, scene);

@@ -2,7 +2,8 @@
 
 use super::Simulation;
 use crate::SimulationError;
-use crate::crack::{Crack, ENDS, Measured, Tip, slot};
+use crate::crack::cracks::TipId;
+use crate::crack::{Crack, Measured, Tip};
 use crate::growth::{self, Advance, Cost};
 use crate::solver::Observed;
 use crate::tip::gauge::Gauge;
@@ -38,9 +39,9 @@ impl Simulation {
         let Self { scene, elastic, solver, state, .. } = self;
         let gauge = Gauge { scene, elastic };
         let every = is_last || !scene.growth.enabled;
-        let mut live = live_tips(&state.cracks);
-        live.retain(|&(crack, end)| {
-            let Some(tip) = &mut state.cracks[crack].tips[slot(end)] else { return false };
+        let mut live = state.cracks.live();
+        live.retain(|&id| {
+            let Some(tip) = state.cracks.tip_mut(id) else { return false };
             let wait = tip.steps_to_look > 0 && !every;
             tip.steps_to_look = if wait { tip.steps_to_look - 1 } else { 0 };
             !wait
@@ -48,19 +49,19 @@ impl Simulation {
         let cracks = &state.cracks;
         let mut measured: Vec<Measured> = Vec::with_capacity(live.len());
         let mut observe = |moment: &dyn Observed| {
-            for &(crack, end) in &live {
-                measured.push(growth::judge(&gauge.measure(moment, cracks, crack, end), scene));
+            for &id in &live {
+                measured.push(growth::judge(&gauge.measure(moment, cracks, id), scene));
             }
         };
         solver.step(cracks, state.time, time_step, &mut observe)?;
         state.steps += 1;
-        for (&(crack, end), m) in live.iter().zip(&mut measured) {
-            let heading = growth::heading(&state.cracks[crack], end, m, scene, elastic, time_step);
-            if let Some(tip) = &mut state.cracks[crack].tips[slot(end)] {
+        for (&id, m) in live.iter().zip(&mut measured) {
+            let heading = growth::heading(&state.cracks, id, m, scene, elastic, time_step);
+            if let Some(tip) = state.cracks.tip_mut(id) {
                 tip.heading = heading;
             }
-            m.fracture_toughness = growth::toughness_ahead(&state.cracks[crack], end, m, scene);
-            if let Some(tip) = &mut state.cracks[crack].tips[slot(end)] {
+            m.fracture_toughness = growth::toughness_ahead(&state.cracks, id, m, scene);
+            if let Some(tip) = state.cracks.tip_mut(id) {
                 tip.measured = *m;
                 let is_far = m.equivalent < FAR_FROM_GROWTH * m.fracture_toughness;
                 let has_schedule = tip.guide.as_ref().is_some_and(|g| g.due(0.0, 0.0).is_some());
@@ -70,104 +71,99 @@ impl Simulation {
             }
         }
         let time = state.time + time_step;
-        for (&(crack, end), &m) in live.iter().zip(&measured) {
-            self.pay_drag(crack, end);
-            self.grow(crack, end, m, time, time_step);
+        for (&id, &m) in live.iter().zip(&measured) {
+            self.pay_drag(id);
+            self.grow(id, m, time, time_step);
         }
         Ok(())
     }
 
     /// What drag has taken counts as taken by the tip.
-    fn pay_drag(&mut self, crack: usize, end: End) {
-        let energy = self.solver.take_drag(crack, end);
+    fn pay_drag(&mut self, id: TipId) {
+        let energy = self.solver.take_drag(id);
         self.state.crack_energy += energy;
-        if let Some(tip) = &mut self.state.cracks[crack].tips[slot(end)] {
+        if let Some(tip) = self.state.cracks.tip_mut(id) {
             tip.balance += energy;
         }
     }
 
     /// Lets one tip grow as far as the energy balance and the speed limit allow within a step that ends at `time`.
-    fn grow(&mut self, crack: usize, end: End, first: Measured, time: f64, time_step: f64) {
-        let may_run = growth::speed_limit(&self.state.cracks[crack], end, &self.scene, &self.elastic, time) * time_step;
-        if let Some(tip) = &mut self.state.cracks[crack].tips[slot(end)] {
+    fn grow(&mut self, id: TipId, first: Measured, time: f64, time_step: f64) {
+        let may_run = growth::speed_limit(&self.state.cracks, id, &self.scene, &self.elastic, time) * time_step;
+        if let Some(tip) = self.state.cracks.tip_mut(id) {
             // A tip that waits may save up the way of one step and no more; it shall not leap later.
             tip.ahead_of_limit = (tip.ahead_of_limit - may_run).max(-may_run);
         }
         let mut measured = first;
         for increment in 0..MOST_INCREMENTS_PER_STEP {
-            let line = &self.state.cracks[crack];
-            let Some(tip) = &line.tips[slot(end)] else { return };
+            let cracks = &self.state.cracks;
+            let Some(tip) = cracks.tip(id) else { return };
             let held = may_run <= 0.0 || tip.ahead_of_limit > 0.0;
-            if held || !growth::wants_to_grow(line, end, &measured, &self.scene, time, self.solver.slides()) {
+            if held || !growth::wants_to_grow(cracks, id, &measured, &self.scene, time, self.solver.slides()) {
                 if increment == 0 {
-                    self.rest(crack, end, held);
+                    self.rest(id, held);
                 }
                 return;
             }
             if tip.target.is_none() {
-                if let Some(branches) =
-                    growth::branches(&self.state.cracks, crack, end, &measured, &self.scene, &self.elastic)
-                {
-                    self.divide(crack, end, branches, &measured);
+                if let Some(branches) = growth::branches(cracks, id, &measured, &self.scene, &self.elastic) {
+                    self.divide(id, branches, &measured);
                     return;
                 }
-                let Some(advance) = growth::advance(&self.state.cracks, crack, end, &measured, &self.scene, time)
-                else {
-                    return;
-                };
-                self.begin_increment(crack, end, &advance, &measured);
-                if self.state.cracks[crack].ends[slot(end)] != CrackEnd::Tip {
+                let Some(advance) = growth::advance(cracks, id, &measured, &self.scene, time) else { return };
+                self.begin_increment(id, &advance, &measured);
+                if self.state.cracks.end(id) != CrackEnd::Tip {
                     return;
                 }
             }
-            if !self.slide(crack, end, &measured, time) {
+            if !self.slide(id, &measured, time) {
                 if increment == 0 {
-                    self.rest(crack, end, false);
+                    self.rest(id, false);
                 }
                 return;
             }
-            measured = self.measure(crack, end);
+            measured = self.measure(id);
         }
     }
 
     /// Sets a tip on its way through an increment, or at its end where tips only jump or the increment is not like others.
-    fn begin_increment(&mut self, crack: usize, end: End, advance: &Advance, measured: &Measured) {
-        let from = self.state.cracks[crack].tip_position(end);
+    fn begin_increment(&mut self, id: TipId, advance: &Advance, measured: &Measured) {
+        let from = self.state.cracks.position(id);
         match advance.points[..] {
             [target] if self.solver.slides() && advance.end == CrackEnd::Tip && advance.state == TipState::Growing => {
-                self.add_points(crack, end, &[from + (target - from) * FIRST_PART], TipState::Growing);
-                if let Some(tip) = &mut self.state.cracks[crack].tips[slot(end)] {
+                self.add_points(id, &[from + (target - from) * FIRST_PART], TipState::Growing);
+                if let Some(tip) = self.state.cracks.tip_mut(id) {
                     tip.target = Some(target);
                 }
             }
             _ => {
-                let length = self.add_points(crack, end, &advance.points, advance.state);
+                let length = self.add_points(id, &advance.points, advance.state);
                 self.state.crack_energy += measured.released.max(0.0) * length;
             }
         }
-        self.state.cracks[crack].ends[slot(end)] = advance.end;
+        self.state.cracks.set_end(id, advance.end);
         if !advance.points.is_empty() {
-            self.solver.recut(&self.state.cracks, &[(crack, end)]);
+            self.solver.recut(&self.state.cracks, &[id]);
         }
     }
 
     /// Lets a tip run through its increment as far as it can pay. Whether it has come to the end of it.
     ///
     /// What the tip takes out of the body on the way is what the way costs: the energy balance holds over every stretch, not only at the moment when growth begins.
-    fn slide(&mut self, crack: usize, end: End, measured: &Measured, time: f64) -> bool {
-        let line = &self.state.cracks[crack];
-        let Some(tip) = &line.tips[slot(end)] else { return false };
+    fn slide(&mut self, id: TipId, measured: &Measured, time: f64) -> bool {
+        let cracks = &self.state.cracks;
+        let Some(tip) = cracks.tip(id) else { return false };
         let Some(target) = tip.target else { return true };
-        let from = line.tip_position(end);
+        let from = cracks.position(id);
         let left = (target - from).norm();
-        let (cost, most) = match growth::cost(line, end, measured, &self.scene, time) {
+        let (cost, most) = match growth::cost(cracks, id, measured, &self.scene, time) {
             Cost::Scheduled(due) => (0.0, due),
             Cost::Energy(cost) => (cost, f64::INFINITY),
         };
         let most = most.min(left).min(-tip.ahead_of_limit);
         let slack = BALANCE_CELLS * self.scene.cell_size * cost;
         let balance = tip.balance.min(slack);
-        let release = self.solver.release(&self.state.cracks, crack, end);
+        let release = self.solver.release(cracks, id);
         let distance = affordable(most, |distance| balance + release(distance) - cost * distance);
         let arrives = distance >= left;
         if !arrives && distance < LEAST_SLIDE * self.scene.cell_size {
@@ -175,9 +171,8 @@ impl Simulation {
         }
         let taken = release(distance);
         let to = if arrives { target } else { from + (target - from) * (distance / left) };
-        let line = &mut self.state.cracks[crack];
-        line.move_end(end, to);
-        if let Some(tip) = &mut line.tips[slot(end)] {
+        self.state.cracks.move_end(id, to);
+        if let Some(tip) = self.state.cracks.tip_mut(id) {
             tip.take_up(distance);
             tip.balance = (balance + taken - cost * distance).max(0.0);
             if arrives {
@@ -185,13 +180,13 @@ impl Simulation {
             }
         }
         self.state.crack_energy += taken;
-        self.solver.slide(&self.state.cracks, crack, end);
+        self.solver.slide(&self.state.cracks, id);
         arrives
     }
 
     /// A tip that does not grow in this step; `held`: by the speed limit alone.
-    fn rest(&mut self, crack: usize, end: End, held: bool) {
-        let Some(tip) = &mut self.state.cracks[crack].tips[slot(end)] else { return };
+    fn rest(&mut self, id: TipId, held: bool) {
+        let Some(tip) = self.state.cracks.tip_mut(id) else { return };
         tip.steps_at_rest = if held { 0 } else { tip.steps_at_rest.saturating_add(1) };
         if tip.state == TipState::Growing && tip.steps_at_rest > ARREST_STEPS {
             tip.state = TipState::Arrested;
@@ -199,14 +194,14 @@ impl Simulation {
     }
 
     /// Adds points to an end. Returns the length that they add [m].
-    fn add_points(&mut self, crack: usize, end: End, points: &[Point], state: TipState) -> f64 {
-        let line = &mut self.state.cracks[crack];
-        let before = line.length();
+    fn add_points(&mut self, id: TipId, points: &[Point], state: TipState) -> f64 {
+        let cracks = &mut self.state.cracks;
+        let before = cracks.of(id).length();
         for &p in points {
-            line.push(end, p);
+            cracks.push(id, p);
         }
-        let length = line.length() - before;
-        if let Some(tip) = &mut line.tips[slot(end)] {
+        let length = cracks.of(id).length() - before;
+        if let Some(tip) = cracks.tip_mut(id) {
             tip.state = state;
             tip.take_up(length);
         }
@@ -214,18 +209,17 @@ impl Simulation {
     }
 
     /// Divides a tip: it goes on along the left branch, a new crack that begins at it along the right one.
-    fn divide(&mut self, crack: usize, end: End, branches: [Vec<Point>; 2], measured: &Measured) {
-        let from = self.state.cracks[crack].tip_position(end);
+    fn divide(&mut self, id: TipId, branches: [Vec<Point>; 2], measured: &Measured) {
+        let from = self.state.cracks.position(id);
         let [left, right] = branches;
         // The first length of both together releases what one straight on would have.
-        let length = self.add_points(crack, end, &left, TipState::Growing);
+        let length = self.add_points(id, &left, TipState::Growing);
         self.state.crack_energy += measured.released.max(0.0) * length;
         let mut points = vec![from];
         points.extend(right);
         let mut twin = Tip::new(None);
         twin.take_up(points.windows(2).map(|w| (w[1] - w[0]).norm()).sum());
-        let line = &mut self.state.cracks[crack];
-        if let Some(tip) = &mut line.tips[slot(end)] {
+        if let Some(tip) = self.state.cracks.tip_mut(id) {
             tip.since_division = 0.0;
             // Each branch goes its own way from here.
             tip.guide = None;
@@ -233,27 +227,25 @@ impl Simulation {
             twin.state = tip.state;
             twin.since_division = 0.0;
         }
-        let ends = [CrackEnd::Junction { crack: crack as u32 }, CrackEnd::Tip];
-        let body = line.body;
-        self.state.cracks.push(Crack { body, points, ends, tips: [None, Some(twin)] });
-        let new = self.state.cracks.len() - 1;
-        self.solver.recut(&self.state.cracks, &[(crack, end), (new, End::End)]);
+        let body = self.state.cracks.of(id).body;
+        let new = self.state.cracks.add(Crack::branch(id.crack, body, points, twin));
+        self.solver.recut(&self.state.cracks, &[id, TipId::new(new, End::End)]);
     }
 
     /// Measures a tip between steps.
-    fn measure(&self, crack: usize, end: End) -> Measured {
+    fn measure(&self, id: TipId) -> Measured {
         let gauge = Gauge { scene: &self.scene, elastic: &self.elastic };
         let cracks = &self.state.cracks;
-        let mut measured = growth::judge(&gauge.measure(self.solver.observed(), cracks, crack, end), &self.scene);
-        measured.fracture_toughness = growth::toughness_ahead(&cracks[crack], end, &measured, &self.scene);
+        let mut measured = growth::judge(&gauge.measure(self.solver.observed(), cracks, id), &self.scene);
+        measured.fracture_toughness = growth::toughness_ahead(cracks, id, &measured, &self.scene);
         measured
     }
 
     /// Measures every live tip now.
     pub fn measure_all(&mut self) {
-        for (crack, end) in live_tips(&self.state.cracks) {
-            let m = self.measure(crack, end);
-            if let Some(tip) = &mut self.state.cracks[crack].tips[slot(end)] {
+        for id in self.state.cracks.live() {
+            let m = self.measure(id);
+            if let Some(tip) = self.state.cracks.tip_mut(id) {
                 tip.measured = m;
             }
         }
@@ -278,13 +270,4 @@ fn affordable(most: f64, balance: impl Fn(f64) -> f64) -> f64 {
         }
     }
     enough
-}
-
-fn live_tips(cracks: &[Crack]) -> Vec<(usize, End)> {
-    let live = |c: &Crack, end: End| c.tips[slot(end)].as_ref().is_some_and(|t| t.state.is_live());
-    cracks
-        .iter()
-        .enumerate()
-        .flat_map(|(i, c)| ENDS.into_iter().filter(move |&end| live(c, end)).map(move |end| (i, end)))
-        .collect()
 }

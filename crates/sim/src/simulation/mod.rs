@@ -1,7 +1,7 @@
 //! The simulation as its users see it: steps, what is measured at the tips, growth, frames.
 
-use crate::crack::fragments;
-use crate::crack::{Crack, ENDS, slot};
+use crate::crack::cracks::Cracks;
+use crate::crack::{Crack, fragments};
 use crate::formulation::{self, Choice};
 use crate::material::elastic::Elastic;
 use crate::particles::Particles;
@@ -40,7 +40,7 @@ struct State {
     frame_number: i64,
     time: f64,
     steps: u64,
-    cracks: Vec<Crack>,
+    cracks: Cracks,
     /// ∫ G da [J/m].
     crack_energy: f64,
     /// Kinetic and strain energy at the beginning [J/m].
@@ -122,7 +122,7 @@ impl Simulation {
     /// # Errors
     /// When the scene cannot be simulated: see [`SimulationError`].
     pub fn new(scene: &Scene) -> Result<Self, SimulationError> {
-        let cracks = Crack::of_scene(scene);
+        let cracks = Cracks::of_scene(scene);
         let elastic: Vec<Elastic> = scene.materials.iter().map(|m| Elastic::new(m, scene.plane)).collect();
         let Choice { formulation, .. } = formulation::choose(scene, &elastic);
         let scene = &formulation::settle(scene, formulation);
@@ -265,14 +265,10 @@ impl Simulation {
         let observed = self.solver.observed();
         let cracks = &self.state.cracks;
         let mut tips = Vec::new();
-        for (index, crack) in cracks.iter().enumerate() {
-            for end in ENDS {
-                if crack.tips[slot(end)].is_some() {
-                    let (position, ahead) = observed.tip_now(cracks, index, end);
-                    let direction = ahead.y.atan2(ahead.x);
-                    tips.extend(crack.record(index, end, position, direction, self.state.interval));
-                }
-            }
+        for id in cracks.ids().filter(|&id| cracks.tip(id).is_some()) {
+            let (position, ahead) = observed.tip_now(cracks, id);
+            let direction = ahead.y.atan2(ahead.x);
+            tips.extend(cracks.of(id).record(id, position, direction, self.state.interval));
         }
         tips
     }
@@ -331,7 +327,7 @@ impl Simulation {
         &mut self,
         watch: &mut dyn FnMut(&Self, &Progress) -> ControlFlow<()>,
     ) -> Result<bool, SimulationError> {
-        for tip in self.state.cracks.iter_mut().flat_map(|c| c.tips.iter_mut().flatten()) {
+        for tip in self.state.cracks.tips_mut() {
             tip.run_at_frame = tip.run();
         }
         let next = self.scene.frames.time(self.state.frame_number + 1);

@@ -1,7 +1,8 @@
 //! The frame of a tip: where it is, where it points, and which face of its crack a place sees.
 
+use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::crossing::Side;
-use crate::crack::{Crack, DIRECTION_LENGTH, chord_start};
+use crate::crack::{DIRECTION_LENGTH, chord_start};
 use fissure_plane::{Matrix, Point, Vector, orientation};
 use fissure_scene::End;
 
@@ -18,12 +19,12 @@ pub(crate) fn turn(cosine: f64, sine: f64) -> (Matrix, Matrix) {
 
 /// One end of a crack of which the points are at `points` now, and the direction ahead of it (unit vector); that at
 /// rest where they all coincide.
-pub(crate) fn tip_of(crack: &Crack, points: &[Point], end: End, cell_size: f64) -> (Point, Vector) {
+pub(crate) fn tip_of(cracks: &Cracks, id: TipId, points: &[Point], cell_size: f64) -> (Point, Vector) {
     let over = DIRECTION_LENGTH * cell_size;
-    let tip = if end == End::Start { points[0] } else { points[points.len() - 1] };
-    let ahead = tip - chord_start(points, end, over);
+    let tip = if id.end == End::Start { points[0] } else { points[points.len() - 1] };
+    let ahead = tip - chord_start(points, id.end, over);
     let length = ahead.norm();
-    (tip, if length > 0.0 { ahead / length } else { crack.ahead(end, over) })
+    (tip, if length > 0.0 { ahead / length } else { cracks.ahead(id, over) })
 }
 
 /// The face of the crack through `points` that a place sees, as a side of the frame of one of its tips (`ahead`: e1):

@@ -1,7 +1,7 @@
 //! What a crack tip feels: from the material around it to J, K_I and K_II.
 
 use crate::StressIntensity;
-use crate::crack::Crack;
+use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::crossing::Side;
 use crate::grid::kernel::axis_stencil;
 use crate::material::elastic::Elastic;
@@ -52,12 +52,12 @@ pub(crate) struct Gauge<'a> {
 
 impl Gauge<'_> {
     /// Measures one tip.
-    pub(crate) fn measure(&self, solver: &dyn Observed, cracks: &[Crack], crack: usize, end: End) -> Reading {
+    pub(crate) fn measure(&self, solver: &dyn Observed, cracks: &Cracks, id: TipId) -> Reading {
         let settings = &self.scene.solver;
         let h = self.scene.cell_size;
         let (radius, radius_shrunk) = match settings.j_method {
             JMethod::Domain => {
-                let room = self.free_radius(cracks, crack, end) / h;
+                let room = self.free_radius(cracks, id) / h;
                 let wanted = settings.j_radius.unwrap_or((PART_OF_ROOM * room).clamp(NARROW_RADIUS, WIDE_RADIUS));
                 (wanted.min(room).max(SMALLEST_RADIUS) * h, wanted > room)
             }
@@ -65,7 +65,7 @@ impl Gauge<'_> {
         };
         // The contour takes kernel averages around its points.
         let reach = if settings.j_method == JMethod::Contour { radius + 2.0 * h } else { radius };
-        let mut zone = solver.tip_zone(cracks, crack, end, reach);
+        let mut zone = solver.tip_zone(cracks, id, reach);
         zone.center_on_crack(h);
         zone.take_off_mean_velocity();
         let Some(nearest) = zone.points.iter().min_by(|a, b| a.place.norm_squared().total_cmp(&b.place.norm_squared()))
@@ -108,9 +108,9 @@ impl Gauge<'_> {
 
     /// Distance from a tip to the nearest thing that would spoil the integral: a ring, another crack, the other end of
     /// this one, a kink [m].
-    fn free_radius(&self, cracks: &[Crack], crack: usize, end: End) -> f64 {
-        let line = &cracks[crack];
-        let tip = line.tip_position(end);
+    fn free_radius(&self, cracks: &Cracks, id: TipId) -> f64 {
+        let line = cracks.of(id);
+        let tip = cracks.position(id);
         let body = &self.scene.bodies[line.body as usize];
         let mut free = body.region.distance_to_rings(tip);
         for inclusion in &body.inclusions {
@@ -118,17 +118,17 @@ impl Gauge<'_> {
             free = free.min(inclusion.region.distance_to_rings(tip));
         }
         for (index, other) in cracks.iter().enumerate() {
-            if index != crack && other.body == line.body {
+            if index != id.crack && other.body == line.body {
                 for w in other.points.windows(2) {
                     free = free.min(fissure_plane::distance_to_segment(tip, w[0], w[1]));
                 }
             }
         }
-        let points: Vec<Point> = match end {
+        let points: Vec<Point> = match id.end {
             End::Start => line.points.clone(),
             End::End => line.points.iter().rev().copied().collect(),
         };
-        let ahead = line.ahead(end, crate::crack::DIRECTION_LENGTH * self.scene.cell_size);
+        let ahead = cracks.ahead(id, crate::crack::DIRECTION_LENGTH * self.scene.cell_size);
         for w in points.windows(3) {
             let (a, b) = (w[1] - w[0], w[2] - w[1]);
             // Both the turn at one point and what small turns have added up to since the tip.

@@ -10,6 +10,7 @@
 use super::Total;
 use super::refresh::Near;
 use crate::crack::Crack;
+use crate::crack::cracks::Cracks;
 use crate::crack::crossing::Side;
 use crate::crack::division::{CrossedSet, facing};
 use fissure_scene::{Point, Vector};
@@ -28,7 +29,7 @@ pub(super) struct ContactPair {
 
 impl Total {
     /// All pairs of fields that face each other across one crack.
-    pub(super) fn contact_pairs(&self, cracks: &[Crack]) -> Vec<ContactPair> {
+    pub(super) fn contact_pairs(&self, cracks: &Cracks) -> Vec<ContactPair> {
         let mut pairs = Vec::new();
         for (node, further) in self.state.fields.divided_nodes() {
             self.add_pairs_of_node(node, further, cracks, &mut pairs);
@@ -37,7 +38,7 @@ impl Total {
     }
 
     /// [`Total::contact_pairs`] after a change: nodes elsewhere have the pairs they had.
-    pub(super) fn contacts_near(&self, near: &Near, cracks: &[Crack]) -> Vec<ContactPair> {
+    pub(super) fn contacts_near(&self, near: &Near, cracks: &Cracks) -> Vec<ContactPair> {
         let node_of = |pair: &ContactPair| self.state.fields.node(pair.above as usize);
         let mut pairs = Vec::with_capacity(self.contacts.len() + 32);
         // Pairs are in the order of their nodes.
@@ -67,7 +68,7 @@ impl Total {
         &self,
         node: usize,
         further: &[(CrossedSet, u32)],
-        cracks: &[Crack],
+        cracks: &Cracks,
         pairs: &mut Vec<ContactPair>,
     ) {
         let own = (Vec::new(), node as u32);
@@ -184,6 +185,7 @@ fn nearest_of(segments: impl Iterator<Item = usize>, line: &Crack, place: Point,
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use crate::crack::cracks::TipId;
     use crate::particles::Particles;
     use crate::solver::Solver;
     use crate::test_scenes;
@@ -191,18 +193,18 @@ mod tests {
     use proptest::prelude::*;
     use std::sync::Arc;
 
-    fn plate(kernel: Kernel, points: &[[f64; 2]]) -> (Total, Vec<Crack>) {
+    fn plate(kernel: Kernel, points: &[[f64; 2]]) -> (Total, Cracks) {
         let mut scene = test_scenes::free_body(test_scenes::rectangle([0.0, 0.0], [4.0, 4.0]), 0.1);
         scene.solver.formulation = Formulation::Total;
         scene.solver.kernel = kernel;
         scene.solver.tip_division = TipDivision::PartlyCut;
         test_scenes::add_crack(&mut scene, points);
-        let cracks = Crack::of_scene(&scene);
+        let cracks = Cracks::of_scene(&scene);
         (Total::new(&scene, Arc::new(Particles::fill(&scene).unwrap()), &cracks).unwrap(), cracks)
     }
 
     /// The segment of every pair, and what a look at all segments of the crack finds.
-    fn assert_nearest(total: &Total, cracks: &[Crack]) {
+    fn assert_nearest(total: &Total, cracks: &Cracks) {
         let clearly = 1e-9 * total.grid.cell_size;
         assert!(!total.contacts.is_empty());
         for pair in &total.contacts {
@@ -239,9 +241,9 @@ mod tests {
             assert_nearest(&total, &cracks);
             let ahead = Vector::new(heading.cos(), heading.sin()) * (grown * total.grid.cell_size);
             if ahead != Vector::zeros() {
-                let tip = cracks[0].tip_position(End::End);
-                cracks[0].push(End::End, tip + ahead);
-                total.recut(&cracks, &[(0, End::End)]);
+                let id = TipId::new(0, End::End);
+                cracks.push(id, cracks.position(id) + ahead);
+                total.recut(&cracks, &[id]);
                 assert_nearest(&total, &cracks);
             }
         }
@@ -256,7 +258,7 @@ mod tests {
             let mut scene = test_scenes::free_body(test_scenes::rectangle([0.0, 0.0], [90.0, 4.0]), 0.1);
             scene.solver.formulation = Formulation::Total;
             test_scenes::add_crack(&mut scene, &points);
-            let cracks = Crack::of_scene(&scene);
+            let cracks = Cracks::of_scene(&scene);
             let total = Total::new(&scene, Arc::new(Particles::fill(&scene).unwrap()), &cracks).unwrap();
             let looks = |pair: &ContactPair| {
                 let place = total.grid.position(total.state.fields.node(pair.above as usize));

@@ -2,10 +2,11 @@
 
 use super::{FieldVectors, NONE, Run, Total};
 use crate::crack::Crack;
+use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::crossing::Side;
 use crate::grid::Walker;
 use crate::saved::{self, Fits};
-use fissure_scene::{CrackEnd, Matrix, Point, Vector};
+use fissure_scene::{CrackEnd, End, Matrix, Point, Vector};
 use serde::{Deserialize, Serialize};
 
 /// One (particle, field) pair.
@@ -407,7 +408,7 @@ impl Total {
     }
 
     /// Lays the probes of outlines and crack faces.
-    pub(super) fn lay_probes(&mut self, cracks: &[Crack]) {
+    pub(super) fn lay_probes(&mut self, cracks: &Cracks) {
         self.state.faces = cracks.iter().map(|c| self.face_probes(c)).collect();
         let spacing = 0.5 * self.grid.cell_size;
         let mut outlines = Vec::new();
@@ -426,12 +427,8 @@ impl Total {
             }
         }
         self.state.outlines = outlines;
-        for crack in 0..cracks.len() {
-            for (end, at) in [(cracks[crack].ends[0], 0), (cracks[crack].ends[1], 1)] {
-                if end == CrackEnd::Mouth {
-                    self.open_mouth(cracks, crack, at);
-                }
-            }
+        for id in cracks.ids().filter(|&id| cracks.end(id) == CrackEnd::Mouth) {
+            self.open_mouth(cracks, id);
         }
     }
 
@@ -451,10 +448,10 @@ impl Total {
     }
 
     /// Doubles the outline where a crack mouths at it: the two new vertices are the end points of the faces.
-    pub(super) fn open_mouth(&mut self, cracks: &[Crack], crack: usize, end: usize) {
-        let at = if end == 0 { 0 } else { cracks[crack].points.len() - 1 };
-        let place = cracks[crack].points[at];
-        let [above, below] = [0, 1].map(|side| self.state.faces[crack][side][at].clone());
+    pub(super) fn open_mouth(&mut self, cracks: &Cracks, id: TipId) {
+        let at = if id.end == End::Start { 0 } else { cracks.of(id).points.len() - 1 };
+        let place = cracks.position(id);
+        let [above, below] = [0, 1].map(|side| self.state.faces[id.crack][side][at].clone());
         let mut best: Option<(f64, usize, usize)> = None;
         for (ring, probes) in self.state.outlines.iter().enumerate() {
             for k in 0..probes.len() {
@@ -469,7 +466,7 @@ impl Total {
         let probes = &mut self.state.outlines[ring];
         // The material lies to the left of a ring. Walking along the ring, the left (above) of a crack that starts here and runs inward
         // comes before the mouth, that of a crack that ends here after it.
-        let pair = if end == 0 { [above, below] } else { [below, above] };
+        let pair = if id.end == End::Start { [above, below] } else { [below, above] };
         // A vertex that coincides with the mouth gives way to the pair.
         let close = |p: &Probe| (p.rest - place).norm() < 1e-9 * self.grid.cell_size;
         let next = (k + 1) % probes.len();

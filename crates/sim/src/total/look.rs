@@ -4,7 +4,8 @@ use super::cut::Probe;
 use super::reader::Rates;
 use super::{FieldVectors, Total, left_of_tip};
 use crate::SimulationError;
-use crate::crack::{Crack, DIRECTION_LENGTH};
+use crate::crack::DIRECTION_LENGTH;
+use crate::crack::cracks::{Cracks, TipId};
 use crate::faces::crack_frame::crack_frame;
 use crate::solver::Observed;
 use crate::tip::frame::{side_of, tip_of, turn};
@@ -34,36 +35,36 @@ const LANCZOS_ROUNDS: usize = 40;
 const RITZ_MARGIN: f64 = 1.01;
 
 impl Observed for Moment<'_> {
-    fn tip_zone(&self, cracks: &[Crack], crack: usize, end: End, radius: f64) -> TipZone {
-        self.solver.zone(cracks, crack, end, radius, self.half_step)
+    fn tip_zone(&self, cracks: &Cracks, id: TipId, radius: f64) -> TipZone {
+        self.solver.zone(cracks, id, radius, self.half_step)
     }
 
-    fn tip_now(&self, cracks: &[Crack], crack: usize, end: End) -> (Point, Vector) {
-        self.solver.tip_now(cracks, crack, end)
+    fn tip_now(&self, cracks: &Cracks, id: TipId) -> (Point, Vector) {
+        self.solver.tip_now(cracks, id)
     }
 }
 
 impl Observed for Total {
-    fn tip_zone(&self, cracks: &[Crack], crack: usize, end: End, radius: f64) -> TipZone {
-        self.zone(cracks, crack, end, radius, 0.0)
+    fn tip_zone(&self, cracks: &Cracks, id: TipId, radius: f64) -> TipZone {
+        self.zone(cracks, id, radius, 0.0)
     }
 
-    fn tip_now(&self, cracks: &[Crack], crack: usize, end: End) -> (Point, Vector) {
-        let faces = &self.state.faces[crack];
+    fn tip_now(&self, cracks: &Cracks, id: TipId) -> (Point, Vector) {
+        let faces = &self.state.faces[id.crack];
         let now: Vec<Point> = faces[0]
             .iter()
             .zip(&faces[1])
             .map(|(above, below)| nalgebra::center(&self.moved(above), &self.moved(below)))
             .collect();
-        tip_of(&cracks[crack], &now, end, self.grid.cell_size)
+        tip_of(cracks, id, &now, self.grid.cell_size)
     }
 }
 
 impl Total {
-    fn zone(&self, cracks: &[Crack], crack: usize, end: End, radius: f64, half_step: f64) -> TipZone {
-        let line = &cracks[crack];
-        let tip = line.tip_position(end);
-        let ahead = line.ahead(end, DIRECTION_LENGTH * self.grid.cell_size);
+    fn zone(&self, cracks: &Cracks, id: TipId, radius: f64, half_step: f64) -> TipZone {
+        let line = cracks.of(id);
+        let tip = cracks.position(id);
+        let ahead = cracks.ahead(id, DIRECTION_LENGTH * self.grid.cell_size);
         let s = self.particles.spacing;
         let center = (tip - self.particles.anchor) / s;
         let reach = (radius / s).ceil() as i32 + 1;
@@ -94,7 +95,7 @@ impl Total {
             let velocity = velocity - acceleration * half_step;
             points.push(QuadraturePoint {
                 place: frame * arm,
-                side: side_of(&line.points, end, ahead, self.particles.rest[p]),
+                side: side_of(&line.points, id.end, ahead, self.particles.rest[p]),
                 volume: self.particles.volume[p],
                 stress: into(back * crate::first_piola_stress(&h, e.mu, e.lambda)),
                 gradient: into(back * h + back_minus_one),
@@ -106,11 +107,11 @@ impl Total {
                 material: self.particles.material[p],
             });
         }
-        let (opening, opening_distance) = self.opening(line, crack, end, frame * back);
+        let (opening, opening_distance) = self.opening(cracks, id, frame * back);
         let into = frame * back;
-        let sign = left_of_tip(end).sign();
+        let sign = left_of_tip(id.end).sign();
         let contacts = self
-            .face_forces(crack)
+            .face_forces(id.crack)
             // Elsewhere the crack may have come back behind the tip.
             .filter(|(place, _)| (place - tip).norm() < radius + 2.0 * self.grid.cell_size)
             .map(|(place, force)| FaceContact { behind: (tip - place).dot(&ahead), force: into * force * sign })
@@ -119,12 +120,13 @@ impl Total {
     }
 
     /// Opening of the faces some way behind a tip, in the tip frame, and that distance.
-    fn opening(&self, line: &Crack, crack: usize, end: End, into: Matrix) -> (Vector, f64) {
+    fn opening(&self, cracks: &Cracks, id: TipId, into: Matrix) -> (Vector, f64) {
+        let line = cracks.of(id);
         // 1 to 3 cells behind the tip: nearer, the tip's own discretisation shows; farther, the next term of the series.
         let wanted = 1.5 * self.grid.cell_size;
         let n = line.points.len();
         let mut distance = 0.0;
-        let order: Vec<usize> = match end {
+        let order: Vec<usize> = match id.end {
             End::End => (0..n).rev().collect(),
             End::Start => (0..n).collect(),
         };
@@ -134,7 +136,7 @@ impl Total {
             if distance + length >= wanted {
                 let t = (wanted - distance) / length;
                 let jump = |k: usize| {
-                    let [above, below] = &self.state.faces[crack];
+                    let [above, below] = &self.state.faces[id.crack];
                     above[k].value(&self.state.displacement) - below[k].value(&self.state.displacement)
                 };
                 // The probe between two crack points, a hair beside the crack.
@@ -151,7 +153,7 @@ impl Total {
                 if let (Some(a), Some(b)) = (value(left), value(right)) {
                     return (into * (a - b), wanted);
                 }
-                let sign = left_of_tip(end).sign();
+                let sign = left_of_tip(id.end).sign();
                 return (into * (jump(w[1]) * sign), distance + length);
             }
             distance += length;
@@ -352,8 +354,8 @@ impl Total {
         frames
     }
 
-    pub(super) fn frames_of_cracks(&self, cracks: &[Crack]) -> Vec<CrackFrame> {
-        let frame = |(index, (crack, faces)): (usize, (&Crack, &[Vec<Probe>; 2]))| {
+    pub(super) fn frames_of_cracks(&self, cracks: &Cracks) -> Vec<CrackFrame> {
+        let frame = |(index, (crack, faces)): (usize, (&crate::crack::Crack, &[Vec<Probe>; 2]))| {
             let places = faces.each_ref().map(|face| face.iter().map(|p| self.moved(p)).collect());
             let velocities = faces.each_ref().map(|face| face.iter().map(|p| p.value(&self.state.velocity)).collect());
             crack_frame(index, crack, places, velocities)

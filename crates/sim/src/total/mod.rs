@@ -19,9 +19,10 @@ mod tie;
 
 use crate::SimulationError;
 use crate::boundary::collider::Obstacle;
+use crate::crack::Crack;
+use crate::crack::cracks::{Cracks, ENDS, TipId};
 use crate::crack::crossing::Side;
 use crate::crack::division::{CrackLine, Division, TipCut};
-use crate::crack::{Crack, slot};
 use crate::grid::Grid;
 use crate::grid::fields::Fields;
 use crate::grid::kernel;
@@ -39,7 +40,7 @@ use rows::{CellRows, RowConstants, Run};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use tie::{Ties, TipKey, key};
+use tie::Ties;
 
 /// A vector at every field, x and y apart.
 type FieldVectors = [Vec<f64>; 2];
@@ -69,7 +70,7 @@ struct State {
     ties: Ties,
     /// Where each tip was when nodes were last split for it. It has slid on since, within its increment; what is cut anew for other cracks is cut for it as it
     /// was, or nodes at the edge of what is cut anew would be split by halves.
-    cut_at: BTreeMap<TipKey, Point>,
+    cut_at: BTreeMap<TipId, Point>,
     /// Velocities and displacements belong to the same moment: the next kick takes half a step, after which velocities are half a step ahead. A
     /// whole kick here would more than double the amplitude of the shortest waves.
     in_step: bool,
@@ -103,7 +104,7 @@ const NONE: u32 = u32::MAX;
 
 impl Total {
     /// Lays the lattice and cuts it by the initial cracks.
-    pub(crate) fn new(scene: &Scene, particles: Arc<Particles>, cracks: &[Crack]) -> Result<Self, SimulationError> {
+    pub(crate) fn new(scene: &Scene, particles: Arc<Particles>, cracks: &Cracks) -> Result<Self, SimulationError> {
         let (mut low, mut high) = fissure_plane::bounds(&[]);
         for body in &scene.bodies {
             let (l, h) = body.region.bounds();
@@ -167,7 +168,7 @@ impl Total {
     pub(crate) fn restore(
         scene: &Scene,
         particles: Arc<Particles>,
-        cracks: &[Crack],
+        cracks: &Cracks,
         state: &[u8],
     ) -> Result<Self, SimulationError> {
         let mut solver = Self::new(scene, particles, cracks)?;
@@ -180,7 +181,7 @@ impl Total {
     }
 
     /// Checks a state that was read against the lattice and the cracks.
-    fn check(&self, state: &State, cracks: &[Crack]) -> Fits {
+    fn check(&self, state: &State, cracks: &Cracks) -> Fits {
         let (nodes, fields) = (self.grid.len(), state.fields.len());
         state.fields.check(nodes, cracks.len())?;
         for values in [&state.mass].into_iter().chain(&state.displacement).chain(&state.velocity) {
@@ -199,27 +200,27 @@ impl Total {
         saved::ensure(rings, "an outline")?;
         let same_points =
             |(faces, crack): (&[Vec<Probe>; 2], &Crack)| faces.iter().all(|f| f.len() == crack.points.len());
-        let faces = state.faces.len() == cracks.len() && state.faces.iter().zip(cracks).all(same_points);
+        let faces = state.faces.len() == cracks.len() && state.faces.iter().zip(cracks.iter()).all(same_points);
         saved::ensure(faces, "the faces of a crack")?;
         let probes = state.outlines.iter().flatten().chain(state.faces.iter().flatten().flatten());
         probes.clone().try_for_each(|probe| probe.check(fields))?;
         state.ties.check(fields, nodes, cracks.len())?;
-        tie::check_tips(state.cut_at.keys(), cracks.len())?;
+        state.cut_at.keys().try_for_each(|id| id.check(cracks.len()))?;
         let ((low, high), margin) = (fissure_plane::bounds(&self.particles.rest), Vector::repeat(self.grid.cell_size));
         let is_near = |place: &Point| *place >= low - margin && *place <= high + margin;
         saved::ensure(state.cut_at.values().all(is_near), "the place of a tip")?;
         saved::finite("its last step", [&state.external_work, &state.last_step])
     }
 
-    fn division_of(scene: &Scene, cracks: &[Crack], cut_at: &BTreeMap<TipKey, Point>) -> Division {
+    fn division_of(scene: &Scene, cracks: &Cracks, cut_at: &BTreeMap<TipId, Point>) -> Division {
         // A line from a particle inside the body to a node outside may pass a mouth by as much as the kernel reaches.
         let reach = 0.5 * kernel::width(scene.solver.kernel) as f64;
         let beyond = 2.0 * reach * scene.cell_size;
         let points = |i: usize, c: &Crack| {
             let mut points = c.points.clone();
             let last = points.len() - 1;
-            for (end, at) in [(End::Start, 0), (End::End, last)] {
-                if let (CrackEnd::Tip, Some(&place)) = (c.ends[slot(end)], cut_at.get(&key(i, end))) {
+            for (end, at) in ENDS.into_iter().zip([0, last]) {
+                if let (CrackEnd::Tip, Some(&place)) = (c.end(end), cut_at.get(&TipId::new(i, end))) {
                     points[at] = place;
                 }
             }
@@ -323,7 +324,7 @@ impl Solver for Total {
 
     fn step(
         &mut self,
-        cracks: &[Crack],
+        cracks: &Cracks,
         time: f64,
         time_step: f64,
         observe: &mut dyn FnMut(&dyn Observed),
@@ -384,7 +385,7 @@ impl Solver for Total {
         self.check_range(time)
     }
 
-    fn recut(&mut self, cracks: &[Crack], changed: &[(usize, End)]) {
+    fn recut(&mut self, cracks: &Cracks, changed: &[TipId]) {
         self.take_up(cracks, changed);
     }
 
@@ -392,17 +393,17 @@ impl Solver for Total {
         self.settings.tip_division == TipDivision::PartlyCut
     }
 
-    fn release(&self, cracks: &[Crack], crack: usize, end: End) -> Release {
-        self.release_of_ties(&cracks[crack], crack, end)
+    fn release(&self, cracks: &Cracks, id: TipId) -> Release {
+        self.release_of_ties(cracks, id)
     }
 
-    fn take_drag(&mut self, crack: usize, end: End) -> f64 {
-        self.state.ties.take_drag(crack, end)
+    fn take_drag(&mut self, id: TipId) -> f64 {
+        self.state.ties.take_drag(id)
     }
 
-    fn slide(&mut self, cracks: &[Crack], crack: usize, end: End) {
-        self.soften_ties(&cracks[crack], crack, end);
-        self.move_last_faces(&cracks[crack], crack, end);
+    fn slide(&mut self, cracks: &Cracks, id: TipId) {
+        self.soften_ties(cracks, id);
+        self.move_last_faces(cracks, id);
     }
 
     fn observed(&self) -> &dyn Observed {
@@ -420,7 +421,7 @@ impl Solver for Total {
         self.state.in_step = true;
     }
 
-    fn hand_over(&mut self, cracks: &[Crack]) -> Option<Handover> {
+    fn hand_over(&mut self, cracks: &Cracks) -> Option<Handover> {
         let mut reader = self.reader();
         let particles = (0..self.particles.len())
             .map(|p| {
@@ -493,7 +494,7 @@ impl Solver for Total {
         self.frames_of_outlines()
     }
 
-    fn crack_frames(&self, cracks: &[Crack]) -> Vec<CrackFrame> {
+    fn crack_frames(&self, cracks: &Cracks) -> Vec<CrackFrame> {
         self.frames_of_cracks(cracks)
     }
 

@@ -7,9 +7,9 @@
 use super::Total;
 use super::cut::Entry;
 use super::refresh::Near;
-use super::tie::key;
+use crate::crack::Crack;
+use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::crossing::Side;
-use crate::crack::{Crack, slot};
 use crate::grid::kernel;
 use fissure_plane::{Matrix, Point, Vector, bounds};
 use fissure_scene::{CrackEnd, End};
@@ -53,14 +53,13 @@ impl Total {
     }
 
     /// Takes up new crack points and new kinds of ends.
-    pub(super) fn take_up(&mut self, cracks: &[Crack], changed: &[(usize, End)]) {
-        for &(crack, end) in changed {
-            self.state.cut_at.insert(key(crack, end), cracks[crack].tip_position(end));
+    pub(super) fn take_up(&mut self, cracks: &Cracks, changed: &[TipId]) {
+        for &id in changed {
+            self.state.cut_at.insert(id, cracks.position(id));
         }
         self.division = Self::division_of(&self.scene, cracks, &self.state.cut_at);
         let points_before: Vec<usize> = self.state.faces.iter().map(|faces| faces[0].len()).collect();
-        let boxes: Vec<(Point, Point)> =
-            changed.iter().map(|&(crack, end)| self.changed_box(&cracks[crack], end)).collect();
+        let boxes: Vec<(Point, Point)> = changed.iter().map(|&id| self.changed_box(cracks.of(id), id.end)).collect();
         self.recut_particles(&boxes);
         self.refresh_probes(cracks, changed, &boxes);
         // Particles at the rim of a box, up to two rows beyond it, have given mass to nodes outside it, or taken it from them.
@@ -208,23 +207,24 @@ impl Total {
     }
 
     /// The faces of a crack whose last point at one end has moved along its last segment.
-    pub(super) fn move_last_faces(&mut self, crack: &Crack, index: usize, end: End) {
+    pub(super) fn move_last_faces(&mut self, cracks: &Cracks, id: TipId) {
+        let crack = cracks.of(id);
         let n = crack.points.len();
         // The point before has a tangent that depends on the last one only by its direction, which stays.
-        let last = if end == End::Start { 0 } else { n - 1 };
+        let last = if id.end == End::Start { 0 } else { n - 1 };
         for (face, side) in [Side::Above, Side::Below].into_iter().enumerate() {
-            self.state.faces[index][face][last] = self.face_probe(crack, last, side);
+            self.state.faces[id.crack][face][last] = self.face_probe(crack, last, side);
         }
     }
 
-    fn refresh_probes(&mut self, cracks: &[Crack], changed: &[(usize, End)], boxes: &[(Point, Point)]) {
+    fn refresh_probes(&mut self, cracks: &Cracks, changed: &[TipId], boxes: &[(Point, Point)]) {
         // Faces: a changed crack anew (points have been added), the others where they lie in a box.
         let within = |p: Point| boxes.iter().any(|(low, high)| p >= *low && p <= *high);
         for (index, crack) in cracks.iter().enumerate() {
             if index >= self.state.faces.len() {
                 let faces = self.face_probes(crack);
                 self.state.faces.push(faces);
-            } else if changed.iter().any(|c| c.0 == index) || crack.points.iter().any(|&p| within(p)) {
+            } else if changed.iter().any(|id| id.crack == index) || crack.points.iter().any(|&p| within(p)) {
                 self.state.faces[index] = self.face_probes(crack);
             }
         }
@@ -237,14 +237,13 @@ impl Total {
                 }
             }
         }
-        for &(crack, end) in changed {
-            let at = slot(end);
-            if cracks[crack].ends[at] == CrackEnd::Mouth {
-                let point = cracks[crack].tip_position(end);
+        for &id in changed {
+            if cracks.end(id) == CrackEnd::Mouth {
+                let point = cracks.position(id);
                 let there =
                     |p: &super::cut::Probe| (p.rest - point).norm() < 1e-12 * self.grid.cell_size && p.nudged != p.rest;
                 if !self.state.outlines.iter().flatten().any(there) {
-                    self.open_mouth(cracks, crack, at);
+                    self.open_mouth(cracks, id);
                 }
             }
         }

@@ -3,6 +3,7 @@
 use super::Total;
 use crate::SimulationError;
 use crate::crack::Crack;
+use crate::crack::cracks::{Cracks, TipId};
 use fissure_scene::{End, Point};
 
 /// Where something has changed.
@@ -15,14 +16,9 @@ pub(super) struct Near {
 
 impl Near {
     /// `points_before`: number of points of each crack before it changed.
-    pub(super) fn new(
-        boxes: Vec<(Point, Point)>,
-        cracks: &[Crack],
-        changed: &[(usize, End)],
-        points_before: &[usize],
-    ) -> Self {
+    pub(super) fn new(boxes: Vec<(Point, Point)>, cracks: &Cracks, changed: &[TipId], points_before: &[usize]) -> Self {
         let shift = |(index, crack): (usize, &Crack)| match points_before.get(index) {
-            Some(&before) if changed.contains(&(index, End::Start)) => (crack.points.len() - before) as u32,
+            Some(&before) if changed.contains(&TipId::new(index, End::Start)) => (crack.points.len() - before) as u32,
             _ => 0,
         };
         Self { boxes, shifts: cracks.iter().enumerate().map(shift).collect() }
@@ -55,7 +51,7 @@ impl Total {
     ///
     /// # Errors
     /// When a load or support selects nothing.
-    pub(super) fn refresh(&mut self, cracks: &[Crack]) -> Result<(), SimulationError> {
+    pub(super) fn refresh(&mut self, cracks: &Cracks) -> Result<(), SimulationError> {
         self.refresh_masses();
         self.loads = self.point_forces()?;
         self.constraints = self.constraints_of_supports()?;
@@ -65,7 +61,7 @@ impl Total {
     }
 
     /// The same where something has changed; the result is that of [`Total::refresh`], order included.
-    pub(super) fn refresh_near(&mut self, near: &Near, cracks: &[Crack]) {
+    pub(super) fn refresh_near(&mut self, near: &Near, cracks: &Cracks) {
         self.refresh_masses();
         self.refresh_loads(near);
         self.constraints = self.constraints_near(near);

@@ -2,13 +2,16 @@
 #![allow(clippy::unwrap_used)]
 
 use super::Total;
-use crate::crack::Crack;
+use crate::crack::cracks::{Cracks, TipId};
 use crate::particles::Particles;
 use crate::solver::Solver;
 use crate::test_scenes;
 use fissure_scene::{End, Formulation, Kernel, Scene, Selection, TipDivision, Vector};
 use std::f64::consts::TAU;
 use std::sync::Arc;
+
+/// The tip of the only crack.
+const TIP: TipId = TipId { crack: 0, end: End::End };
 
 /// A square of 20 × 20 cells with an edge crack, its faces free to pass: contact acts at one node of two places, which is no couple-free pair of forces.
 fn cracked_plate() -> Scene {
@@ -21,8 +24,8 @@ fn cracked_plate() -> Scene {
     scene
 }
 
-fn solver(scene: &Scene) -> (Total, Vec<Crack>) {
-    let cracks = Crack::of_scene(scene);
+fn solver(scene: &Scene) -> (Total, Cracks) {
+    let cracks = Cracks::of_scene(scene);
     (Total::new(scene, Arc::new(Particles::fill(scene).unwrap()), &cracks).unwrap(), cracks)
 }
 
@@ -59,10 +62,10 @@ fn growth_keeps_mass_and_momentum() {
         let mass: f64 = total.state.mass.iter().sum();
         let (linear, _) = total.momenta();
         let kinetic = total.kinetic_energy();
-        let tip = cracks[0].tip_position(End::End);
+        let tip = cracks.position(TIP);
         let turn = Vector::new(0.21, if k % 3 == 0 { 0.08 } else { -0.05 }) * scene.cell_size;
-        cracks[0].push(End::End, tip + turn);
-        total.recut(&cracks, &[(0, End::End)]);
+        cracks.push(TIP, tip + turn);
+        total.recut(&cracks, &[TIP]);
         let (linear_after, _) = total.momenta();
         assert!((total.state.mass.iter().sum::<f64>() / mass - 1.0).abs() < 1e-12);
         assert!((linear_after - linear).norm() < 1e-12 * linear.norm(), "{linear} {linear_after}");
@@ -90,7 +93,7 @@ fn ten_turns_leave_no_stress() {
 }
 
 /// Moves the upper half up, until the crack is open by a good part of a cell at its mouth.
-fn opened() -> (Total, Vec<Crack>) {
+fn opened() -> (Total, Cracks) {
     let mut scene = cracked_plate();
     let upper = Selection::Region(test_scenes::rectangle([-1.0, 2.03], [5.0, 5.0]));
     test_scenes::set_motion(&mut scene, upper, [0.0, 1.0], 0.0, [0.0, 0.0]);
@@ -109,9 +112,9 @@ fn a_turning_crack_leaves_the_strain_as_it_is() {
     let (mut total, mut cracks) = opened();
     let ties = total.state.ties.energy(&total.state.displacement);
     let lattice = total.strain_energy() - ties;
-    let tip = cracks[0].tip_position(End::End);
-    cracks[0].push(End::End, tip + Vector::new(0.05, 0.1) * total.grid.cell_size);
-    total.recut(&cracks, &[(0, End::End)]);
+    let tip = cracks.position(TIP);
+    cracks.push(TIP, tip + Vector::new(0.05, 0.1) * total.grid.cell_size);
+    total.recut(&cracks, &[TIP]);
     let ties_after = total.state.ties.energy(&total.state.displacement);
     let lattice_after = total.strain_energy() - ties_after;
     assert!((lattice_after / lattice - 1.0).abs() < 1e-12, "{lattice} {lattice_after}");
@@ -147,17 +150,17 @@ fn ties_ask_for_no_shorter_step() {
 #[test]
 fn a_sliding_tip_takes_what_was_said() {
     let (mut total, mut cracks) = opened();
-    let tip = cracks[0].tip_position(End::End);
+    let tip = cracks.position(TIP);
     let h = total.grid.cell_size;
-    cracks[0].push(End::End, tip + Vector::new(1e-4 * h, 0.0));
-    total.recut(&cracks, &[(0, End::End)]);
+    cracks.push(TIP, tip + Vector::new(1e-4 * h, 0.0));
+    total.recut(&cracks, &[TIP]);
     // Displacements and velocities of one moment, so that both kicks see the same opening.
     total.stop();
     let (before, distance) = (total.strain_energy(), 0.1 * h);
-    let said = total.release(&cracks, 0, End::End)(distance);
-    let from = cracks[0].tip_position(End::End);
-    cracks[0].move_end(End::End, from + Vector::new(distance, 0.0));
-    total.slide(&cracks, 0, End::End);
+    let said = total.release(&cracks, TIP)(distance);
+    let from = cracks.position(TIP);
+    cracks.move_end(TIP, from + Vector::new(distance, 0.0));
+    total.slide(&cracks, TIP);
     let taken = before - total.strain_energy();
     assert!(taken > 0.0 && (taken / said - 1.0).abs() < 1e-9, "{said} {taken}");
 }
@@ -169,11 +172,11 @@ fn a_tip_on_its_way_is_cut_as_it_was() {
     let (mut total, mut cracks) = opened();
     let increment = Vector::new(total.scene.growth.increment * total.grid.cell_size, 0.0);
     for _ in 0..8 {
-        let from = cracks[0].tip_position(End::End);
-        cracks[0].push(End::End, from + increment * 1e-3);
-        total.recut(&cracks, &[(0, End::End)]);
-        cracks[0].move_end(End::End, from + increment);
-        total.slide(&cracks, 0, End::End);
+        let from = cracks.position(TIP);
+        cracks.push(TIP, from + increment * 1e-3);
+        total.recut(&cracks, &[TIP]);
+        cracks.move_end(TIP, from + increment);
+        total.slide(&cracks, TIP);
         let (fields, mass) = (total.state.fields.len(), total.state.mass.clone());
         total.division = Total::division_of(&total.scene, &cracks, &total.state.cut_at);
         total.recut_particles(&[(from - Vector::repeat(1.0), from + Vector::repeat(0.1))]);
@@ -209,9 +212,9 @@ fn faces_meet_and_do_not_sink_in() {
         total.step(&cracks, 0.0, time_step, &mut |_| ()).unwrap();
     }
     let before = force(&total);
-    let tip = cracks[0].tip_position(End::End);
-    cracks[0].push(End::End, tip + Vector::new(0.1, 0.02) * total.grid.cell_size);
-    total.recut(&cracks, &[(0, End::End)]);
+    let tip = cracks.position(TIP);
+    cracks.push(TIP, tip + Vector::new(0.1, 0.02) * total.grid.cell_size);
+    total.recut(&cracks, &[TIP]);
     assert!((force(&total) - before).norm() < 1e-12 * before.norm(), "{before} {}", force(&total));
 }
 

@@ -19,18 +19,15 @@
 
 use super::refresh::Near;
 use super::{FieldVectors, Total};
+use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::division::{CrossedSet, WINDOW, facing};
-use crate::crack::{Crack, ENDS, slot};
 use crate::grid::kernel;
 use crate::material::elastic::Elastic;
 use crate::saved::{self, Fits};
 use crate::solver::Release;
-use fissure_scene::{CrackEnd, End, Point, TipDivision, TipState, Vector};
+use fissure_scene::{CrackEnd, Point, TipDivision, TipState, Vector};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
-
-/// A crack and the position of one of its ends in [start, end].
-pub(super) type TipKey = (u32, u8);
 
 /// A spring between two fields of one node.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -58,7 +55,7 @@ struct Tie {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Coupled {
     /// Tip and place of each tie in the list of its tip.
-    members: Vec<(TipKey, usize)>,
+    members: Vec<(TipId, usize)>,
     fields: Vec<u32>,
     /// Row by row: the forces that give the fields, each with its own mass, the accelerations that all have together.
     mixing: Vec<f64>,
@@ -67,7 +64,7 @@ struct Coupled {
 /// All ties.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Ties {
-    of_tip: BTreeMap<TipKey, Vec<Tie>>,
+    of_tip: BTreeMap<TipId, Vec<Tie>>,
     at_node: BTreeMap<u32, Coupled>,
 }
 
@@ -159,26 +156,13 @@ impl Tie {
     }
 }
 
-/// Checks that tips are ends of one of `cracks` cracks.
-///
-/// # Errors
-/// [`SimulationError::BadState`](crate::SimulationError::BadState)
-pub(super) fn check_tips<'a>(tips: impl Iterator<Item = &'a TipKey> + Clone, cracks: usize) -> Fits {
-    saved::below("a tip", tips.clone().map(|(crack, _)| *crack), cracks)?;
-    saved::below("a tip", tips.map(|(_, end)| u32::from(*end)), ENDS.len())
-}
-
-pub(super) fn key(crack: usize, end: End) -> TipKey {
-    (crack as u32, slot(end) as u8)
-}
-
 impl Ties {
     /// Checks ties that were read against so many `fields`, `nodes` and `cracks`.
     ///
     /// # Errors
     /// [`SimulationError::BadState`](crate::SimulationError::BadState)
     pub(super) fn check(&self, fields: usize, nodes: usize, cracks: usize) -> Fits {
-        check_tips(self.of_tip.keys(), cracks)?;
+        self.of_tip.keys().try_for_each(|id| id.check(cracks))?;
         saved::below("a tie", self.all().flat_map(|tie| [tie.first, tie.second]), fields)?;
         saved::below("a tie", self.all().map(|tie| tie.node), nodes)?;
         for tie in self.all() {
@@ -199,8 +183,8 @@ impl Ties {
     }
 
     /// Takes what drag has taken at a tip since the last call [J/m].
-    pub(super) fn take_drag(&mut self, crack: usize, end: End) -> f64 {
-        let ties = self.of_tip.get_mut(&key(crack, end)).map_or(&mut [][..], Vec::as_mut_slice);
+    pub(super) fn take_drag(&mut self, id: TipId) -> f64 {
+        let ties = self.of_tip.get_mut(&id).map_or(&mut [][..], Vec::as_mut_slice);
         ties.iter_mut().map(|tie| std::mem::take(&mut tie.dragged)).sum()
     }
 
@@ -247,36 +231,34 @@ impl Ties {
 
 impl Total {
     /// Lays the ties of all tips anew.
-    pub(super) fn lay_ties(&mut self, cracks: &[Crack]) {
+    pub(super) fn lay_ties(&mut self, cracks: &Cracks) {
         self.state.ties = Ties::default();
         self.lay_ties_where(cracks, |_| true);
     }
 
     /// Lays the ties anew of tips whose ties reach to where something has changed: a field that has lost its mass, to another crack maybe, cannot be tied.
-    pub(super) fn lay_ties_near(&mut self, near: &Near, cracks: &[Crack]) {
+    pub(super) fn lay_ties_near(&mut self, near: &Near, cracks: &Cracks) {
         let reach = (WINDOW.hypot(WINDOW) + 1.0) * self.grid.cell_size;
         self.lay_ties_where(cracks, |tip| near.is_within(tip, reach));
     }
 
-    fn lay_ties_where(&mut self, cracks: &[Crack], is_changed: impl Fn(Point) -> bool) {
+    fn lay_ties_where(&mut self, cracks: &Cracks, is_changed: impl Fn(Point) -> bool) {
         if self.settings.tip_division != TipDivision::PartlyCut {
             return;
         }
         let mut changed = BTreeSet::new();
-        for (index, crack) in cracks.iter().enumerate() {
-            for end in ENDS.into_iter().filter(|&end| is_changed(crack.tip_position(end))) {
-                let is_tip = crack.ends[slot(end)] == CrackEnd::Tip;
-                let mut ties = if is_tip { self.ties_at(index, crack, end) } else { Vec::new() };
-                let before = self.state.ties.of_tip.remove(&key(index, end)).unwrap_or_default();
-                for tie in &mut ties {
-                    let same = before.iter().find(|b| (b.first, b.second) == (tie.first, tie.second));
-                    tie.take_over(same, &self.state.displacement);
-                }
-                changed.extend(ties.iter().chain(&before).map(|tie| tie.node));
-                self.state.ties.of_tip.insert(key(index, end), ties);
+        for id in cracks.ids().filter(|&id| is_changed(cracks.position(id))) {
+            let is_tip = cracks.end(id) == CrackEnd::Tip;
+            let mut ties = if is_tip { self.ties_at(cracks, id) } else { Vec::new() };
+            let before = self.state.ties.of_tip.remove(&id).unwrap_or_default();
+            for tie in &mut ties {
+                let same = before.iter().find(|b| (b.first, b.second) == (tie.first, tie.second));
+                tie.take_over(same, &self.state.displacement);
             }
+            changed.extend(ties.iter().chain(&before).map(|tie| tie.node));
+            self.state.ties.of_tip.insert(id, ties);
         }
-        let mut members: BTreeMap<u32, Vec<(TipKey, usize)>> = BTreeMap::new();
+        let mut members: BTreeMap<u32, Vec<(TipId, usize)>> = BTreeMap::new();
         for (&tip, ties) in &self.state.ties.of_tip {
             for (k, tie) in ties.iter().enumerate().filter(|(_, tie)| changed.contains(&tie.node)) {
                 members.entry(tie.node).or_default().push((tip, k));
@@ -295,10 +277,10 @@ impl Total {
         Measures { cell_size: self.grid.cell_size, crossing: self.grid.cell_size / fastest }
     }
 
-    fn ties_at(&self, index: usize, crack: &Crack, end: End) -> Vec<Tie> {
+    fn ties_at(&self, cracks: &Cracks, id: TipId) -> Vec<Tie> {
         let h = self.grid.cell_size;
         let measures = self.measures();
-        let (tip, direction) = (crack.tip_position(end), crack.last_direction(end));
+        let (tip, direction) = (cracks.position(id), cracks.last_direction(id));
         let [middle_column, middle_row] = self.grid.cell(tip);
         let reach = WINDOW.ceil() as i32 + 1;
         let mut ties = Vec::new();
@@ -321,7 +303,7 @@ impl Total {
                     .collect();
                 for (k, (first_set, first, s1)) in all.iter().enumerate() {
                     for (second_set, second, s2) in &all[k + 1..] {
-                        if facing(first_set, second_set).is_none_or(|(crack, _)| crack as usize != index) {
+                        if facing(first_set, second_set).is_none_or(|(crack, _)| crack as usize != id.crack) {
                             continue;
                         }
                         let mut tie = Tie {
@@ -363,10 +345,10 @@ impl Total {
     }
 
     /// Softens the ties of a tip to where it is now.
-    pub(super) fn soften_ties(&mut self, crack: &Crack, index: usize, end: End) {
+    pub(super) fn soften_ties(&mut self, cracks: &Cracks, id: TipId) {
         let measures = self.measures();
-        let (tip, direction) = (crack.tip_position(end), crack.last_direction(end));
-        let Some(ties) = self.state.ties.of_tip.get_mut(&key(index, end)) else { return };
+        let (tip, direction) = (cracks.position(id), cracks.last_direction(id));
+        let Some(ties) = self.state.ties.of_tip.get_mut(&id) else { return };
         let mut nodes: Vec<u32> = Vec::with_capacity(ties.len());
         for tie in ties {
             tie.set(tie.ahead_of(tip, direction, measures.cell_size), measures);
@@ -383,10 +365,10 @@ impl Total {
     /// What the ties of a tip would give up if it went straight on now.
     ///
     /// The leapfrog keeps ½ v(t − Δt/2) · M v(t + Δt/2) + U(t). Both kicks count: a stiffness that changes by ΔK at t changes this by ½ u(t − Δt) · ΔK u(t).
-    pub(super) fn release_of_ties(&self, crack: &Crack, index: usize, end: End) -> Release {
+    pub(super) fn release_of_ties(&self, cracks: &Cracks, id: TipId) -> Release {
         let h = self.grid.cell_size;
-        let (tip, direction) = (crack.tip_position(end), crack.last_direction(end));
-        let ties = self.state.ties.of_tip.get(&key(index, end)).map_or(&[][..], Vec::as_slice);
+        let (tip, direction) = (cracks.position(id), cracks.last_direction(id));
+        let ties = self.state.ties.of_tip.get(&id).map_or(&[][..], Vec::as_slice);
         let springs: Vec<(f64, f64, f64)> = ties
             .iter()
             .map(|tie| {
@@ -404,7 +386,7 @@ impl Total {
     }
 
     /// Works out how the inertia of ties couples the fields of a node.
-    fn couple(&mut self, node: u32, members: Vec<(TipKey, usize)>) {
+    fn couple(&mut self, node: u32, members: Vec<(TipId, usize)>) {
         let ties: Vec<&Tie> = members
             .iter()
             .filter_map(|(tip, k)| self.state.ties.of_tip.get(tip)?.get(*k))
@@ -443,10 +425,9 @@ impl Total {
 
     /// Drags at the opening of the ties around growing tips, for a kick of `kick` [s]. Only at its length: a body that turns, and the openings with it, is not dragged
     /// at. Nor is a crack at rest, whose body keeps its energy.
-    pub(super) fn apply_drag(&mut self, cracks: &[Crack], kick: f64) {
-        for (&(crack, slot), ties) in &mut self.state.ties.of_tip {
-            let tip = cracks[crack as usize].tips[slot as usize].as_ref();
-            if tip.is_none_or(|tip| tip.state != TipState::Growing) {
+    pub(super) fn apply_drag(&mut self, cracks: &Cracks, kick: f64) {
+        for (&id, ties) in &mut self.state.ties.of_tip {
+            if cracks.tip(id).is_none_or(|tip| tip.state != TipState::Growing) {
                 continue;
             }
             for tie in ties.iter_mut().filter(|tie| tie.drag > 0.0) {

@@ -1,8 +1,9 @@
 //! Crack points with their two faces, and outlines, carried along by the velocities on the grid (thesis 3.1.7).
 
 use super::Updated;
+use crate::crack::Crack;
+use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::crossing::Side;
-use crate::crack::{Crack, slot};
 use crate::saved::{self, Fits};
 use crate::threads::prelude::*;
 use fissure_scene::{CrackEnd, CrackFrame, End, Matrix, OutlineFrame, Point, Vector};
@@ -33,6 +34,12 @@ impl CrackNow {
         }
     }
 
+    /// Place [m] and velocity [m/s] of the last point of a face, 0 above or 1 below, at an end.
+    pub(super) fn face_end(&self, end: End, face: usize) -> (Point, Vector) {
+        let k = if end == End::Start { 0 } else { self.position.len() - 1 };
+        (self.faces[face][k], self.velocities[face][k])
+    }
+
     /// Whether every list has one entry per crack point.
     pub(super) fn is_even(&self) -> bool {
         let lists = [self.position.len(), self.faces[0].len(), self.faces[1].len()];
@@ -60,8 +67,8 @@ pub(super) struct Tracer {
     pub(super) rest: Point,
     pub(super) position: Point,
     pub(super) velocity: Vector,
-    /// The end of a crack face that this vertex is: (crack, face 0 above or 1 below, end 0 first or 1 last).
-    pub(super) face: Option<(u32, u8, u8)>,
+    /// The end of a crack face that this vertex is, 0 above or 1 below.
+    pub(super) face: Option<(TipId, usize)>,
 }
 
 impl Tracer {
@@ -71,9 +78,9 @@ impl Tracer {
     /// [`SimulationError::BadState`](crate::SimulationError::BadState)
     pub(super) fn check(&self, cracks: usize) -> Fits {
         saved::finite("an outline", self.rest.iter().chain(self.position.iter()).chain(&self.velocity))?;
-        let Some((crack, side, end)) = self.face else { return Ok(()) };
-        saved::below("an outline", [crack], cracks)?;
-        saved::below("an outline", [u32::from(side), u32::from(end)], 2)
+        let Some((id, side)) = self.face else { return Ok(()) };
+        id.check(cracks)?;
+        saved::ensure(side < SIDES.len(), "an outline")
     }
 }
 
@@ -189,15 +196,15 @@ impl Updated {
     }
 
     /// Moves crack points by the centre-of-mass velocity and their faces by the fields above and below (thesis eq. 22 to 24).
-    pub(super) fn move_cracks(&mut self, cracks: &[Crack], time_step: f64) {
+    pub(super) fn move_cracks(&mut self, cracks: &Cracks, time_step: f64) {
         let mut all = std::mem::take(&mut self.state.cracks);
         for (crack, now) in cracks.iter().zip(&mut all) {
             let last = now.position.len() - 1;
             let velocities: Vec<[Vector; 3]> =
                 (0..last + 1).into_par_iter().with_min_len(64).map(|k| self.crack_point_velocities(now, k)).collect();
             for (k, [mean, above, below]) in velocities.into_iter().enumerate() {
-                let is_tip =
-                    (k == 0 && crack.ends[0] == CrackEnd::Tip) || (k == last && crack.ends[1] == CrackEnd::Tip);
+                let is_tip = (k == 0 && crack.end(End::Start) == CrackEnd::Tip)
+                    || (k == last && crack.end(End::End) == CrackEnd::Tip);
                 now.position[k] += mean * time_step;
                 for (side, v) in [above, below].into_iter().enumerate() {
                     // The faces meet at a tip.
@@ -252,7 +259,7 @@ impl Updated {
     }
 
     /// Lays the outlines at rest.
-    pub(super) fn lay_outlines(&mut self, cracks: &[Crack]) {
+    pub(super) fn lay_outlines(&mut self, cracks: &Cracks) {
         let spacing = 0.5 * self.scene.cell_size;
         let tracer = |rest: Point| Tracer { rest, position: rest, velocity: Vector::zeros(), face: None };
         let mut outlines = Vec::new();
@@ -268,12 +275,8 @@ impl Updated {
             }
         }
         self.state.outlines = outlines;
-        for (index, crack) in cracks.iter().enumerate() {
-            for end in 0..2 {
-                if crack.ends[end] == CrackEnd::Mouth {
-                    self.open_mouth(crack, index, end);
-                }
-            }
+        for id in cracks.ids().filter(|&id| cracks.end(id) == CrackEnd::Mouth) {
+            self.open_mouth(cracks, id);
         }
     }
 
@@ -281,11 +284,8 @@ impl Updated {
     pub(super) fn take_over_outlines(&mut self, frames: &[OutlineFrame]) {
         for (tracers, frame) in self.state.outlines.iter_mut().zip(frames) {
             for tracer in tracers {
-                if let Some((crack, face, end)) = tracer.face {
-                    let now = &self.state.cracks[crack as usize];
-                    let k = if end == 0 { 0 } else { now.rest.len() - 1 };
-                    tracer.position = now.faces[face as usize][k];
-                    tracer.velocity = now.velocities[face as usize][k];
+                if let Some((id, face)) = tracer.face {
+                    (tracer.position, tracer.velocity) = self.state.cracks[id.crack].face_end(id.end, face);
                 } else if let Some(k) = frame.rest.iter().position(|&p| p == tracer.rest) {
                     tracer.position = frame.position[k];
                     tracer.velocity = frame.velocity[k];
@@ -295,8 +295,8 @@ impl Updated {
     }
 
     /// Doubles the outline where a crack mouths at it: the two new vertices are the end points of the faces.
-    fn open_mouth(&mut self, crack: &Crack, index: usize, end: usize) {
-        let place = crack.points[if end == 0 { 0 } else { crack.points.len() - 1 }];
+    fn open_mouth(&mut self, cracks: &Cracks, id: TipId) {
+        let place = cracks.position(id);
         let mut best: Option<(f64, usize, usize)> = None;
         for (ring, tracers) in self.state.outlines.iter().enumerate() {
             for k in 0..tracers.len() {
@@ -308,15 +308,11 @@ impl Updated {
             }
         }
         let Some((_, ring, k)) = best else { return };
-        let vertex = |face: u8| Tracer {
-            rest: place,
-            position: place,
-            velocity: Vector::zeros(),
-            face: Some((index as u32, face, end as u8)),
-        };
+        let vertex =
+            |face: usize| Tracer { rest: place, position: place, velocity: Vector::zeros(), face: Some((id, face)) };
         // The material lies to the left of a ring. Walking along the ring, the left (above) of a crack that starts here and runs inward
         // comes before the mouth, that of a crack that ends here after it.
-        let pair = if end == 0 { [vertex(0), vertex(1)] } else { [vertex(1), vertex(0)] };
+        let pair = if id.end == End::Start { [vertex(0), vertex(1)] } else { [vertex(1), vertex(0)] };
         let tracers = &mut self.state.outlines[ring];
         // A vertex that coincides with the mouth gives way to the pair.
         let close = |t: &Tracer| t.face.is_none() && (t.rest - place).norm() < 1e-9 * self.scene.cell_size;
@@ -331,7 +327,7 @@ impl Updated {
     }
 
     /// Takes up new crack points, new cracks and new kinds of ends. Particles keep what they carry, so momentum is untouched.
-    pub(super) fn take_up(&mut self, cracks: &[Crack], changed: &[(usize, End)]) {
+    pub(super) fn take_up(&mut self, cracks: &Cracks, changed: &[TipId]) {
         for (index, crack) in cracks.iter().enumerate() {
             if index >= self.state.cracks.len() {
                 let now = self.born(crack);
@@ -340,12 +336,10 @@ impl Updated {
                 self.state.cracks[index] = self.grown(&self.state.cracks[index], crack);
             }
         }
-        for &(index, end) in changed {
-            let Some(crack) = cracks.get(index) else { continue };
-            let this = (index as u32, slot(end) as u8);
-            let is_open = self.state.outlines.iter().flatten().filter_map(|t| t.face).any(|(c, _, e)| (c, e) == this);
-            if crack.ends[slot(end)] == CrackEnd::Mouth && !is_open {
-                self.open_mouth(crack, index, slot(end));
+        for &id in changed {
+            let is_open = self.state.outlines.iter().flatten().filter_map(|t| t.face).any(|(of, _)| of == id);
+            if cracks.end(id) == CrackEnd::Mouth && !is_open {
+                self.open_mouth(cracks, id);
             }
         }
         self.division = self.division_now(cracks);

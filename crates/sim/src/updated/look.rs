@@ -1,7 +1,7 @@
 //! Looking at the solver: what is around a tip, what a frame holds.
 
 use super::Updated;
-use crate::crack::Crack;
+use crate::crack::cracks::{Cracks, TipId};
 use crate::faces::crack_frame::crack_frame;
 use crate::solver::Observed;
 use crate::tip::frame::{side_of, tip_of, turn};
@@ -20,35 +20,35 @@ pub(super) struct Moment<'a> {
 const OPENING_DISTANCE: f64 = 1.5;
 
 impl Observed for Moment<'_> {
-    fn tip_zone(&self, cracks: &[Crack], crack: usize, end: End, radius: f64) -> TipZone {
-        self.solver.zone(cracks, crack, end, radius, Some(self.time_step))
+    fn tip_zone(&self, cracks: &Cracks, id: TipId, radius: f64) -> TipZone {
+        self.solver.zone(cracks, id, radius, Some(self.time_step))
     }
 
-    fn tip_now(&self, cracks: &[Crack], crack: usize, end: End) -> (Point, Vector) {
-        self.solver.tip_now(cracks, crack, end)
+    fn tip_now(&self, cracks: &Cracks, id: TipId) -> (Point, Vector) {
+        self.solver.tip_now(cracks, id)
     }
 }
 
 /// Between steps there is no grid: velocities are those of the particles, accelerations those of the last step.
 impl Observed for Updated {
-    fn tip_zone(&self, cracks: &[Crack], crack: usize, end: End, radius: f64) -> TipZone {
-        self.zone(cracks, crack, end, radius, None)
+    fn tip_zone(&self, cracks: &Cracks, id: TipId, radius: f64) -> TipZone {
+        self.zone(cracks, id, radius, None)
     }
 
-    fn tip_now(&self, cracks: &[Crack], crack: usize, end: End) -> (Point, Vector) {
-        tip_of(&cracks[crack], &self.state.cracks[crack].position, end, self.scene.cell_size)
+    fn tip_now(&self, cracks: &Cracks, id: TipId) -> (Point, Vector) {
+        tip_of(cracks, id, &self.state.cracks[id.crack].position, self.scene.cell_size)
     }
 }
 
 impl Updated {
     /// The current configuration around a tip. The displacement is measured from the rest configuration turned as the surroundings of the tip
     /// are: a turn of the whole body then leaves no gradient.
-    fn zone(&self, cracks: &[Crack], crack: usize, end: End, radius: f64, time_step: Option<f64>) -> TipZone {
-        let (tip, ahead) = self.tip_now(cracks, crack, end);
+    fn zone(&self, cracks: &Cracks, id: TipId, radius: f64, time_step: Option<f64>) -> TipZone {
+        let (tip, ahead) = self.tip_now(cracks, id);
         let mut found: Vec<(usize, Matrix)> = Vec::new();
         let mut mean = Matrix::zeros();
         for (p, point) in self.state.points.iter().enumerate() {
-            if (point.position - tip).norm_squared() < radius * radius && self.particles.body[p] == cracks[crack].body {
+            if (point.position - tip).norm_squared() < radius * radius && self.particles.body[p] == cracks.of(id).body {
                 let h = self.total_gradient(p);
                 mean += h;
                 found.push((p, h));
@@ -76,7 +76,7 @@ impl Updated {
             let elastic = &point.elastic_gradient;
             points.push(QuadraturePoint {
                 place: frame * (point.position - tip),
-                side: side_of(&self.state.cracks[crack].position, end, ahead, point.position),
+                side: side_of(&self.state.cracks[id.crack].position, id.end, ahead, point.position),
                 volume: self.particles.volume[p] * ratio,
                 stress: into(crate::kirchhoff_stress(elastic, mu, lambda) / ratio),
                 gradient: into(gradient),
@@ -88,12 +88,12 @@ impl Updated {
                 material: self.particles.material[p],
             });
         }
-        let (opening, opening_distance) = self.opening(crack, end);
+        let (opening, opening_distance) = self.opening(id);
         // Above is the left side for one who walks to the end of the crack. Friction only: around a tip in pure shear the smooth kernels find overlaps that are
         // not there, and a pressure that would be a K_I of 4 % of K_II.
-        let sign = if end == End::End { 1.0 } else { -1.0 };
+        let sign = if id.end == End::End { 1.0 } else { -1.0 };
         let contacts = self
-            .face_forces(crack)
+            .face_forces(id.crack)
             // Elsewhere the crack may have come back behind the tip.
             .filter(|(place, _)| (place - tip).norm() < radius + 2.0 * self.scene.cell_size)
             .map(|(place, force)| FaceContact {
@@ -105,24 +105,24 @@ impl Updated {
     }
 
     /// Crack points from a tip backwards.
-    fn backwards(&self, crack: usize, end: End) -> Vec<usize> {
-        let n = self.state.cracks[crack].position.len();
-        match end {
+    fn backwards(&self, id: TipId) -> Vec<usize> {
+        let n = self.state.cracks[id.crack].position.len();
+        match id.end {
             End::End => (0..n).rev().collect(),
             End::Start => (0..n).collect(),
         }
     }
 
     /// Opening of the faces some way behind a tip, left minus right as seen from the tip looking ahead [m], and that distance [m].
-    fn opening(&self, crack: usize, end: End) -> (Vector, f64) {
-        let now = &self.state.cracks[crack];
+    fn opening(&self, id: TipId) -> (Vector, f64) {
+        let now = &self.state.cracks[id.crack];
         let wanted = OPENING_DISTANCE * self.scene.cell_size;
         // Above is the left side for one who walks to the end of the crack.
-        let sign = if end == End::End { 1.0 } else { -1.0 };
+        let sign = if id.end == End::End { 1.0 } else { -1.0 };
         let jump = |k: usize| (now.faces[0][k] - now.faces[1][k]) * sign;
         let mut distance = 0.0;
         let mut last = (Vector::zeros(), 0.0);
-        for w in self.backwards(crack, end).windows(2) {
+        for w in self.backwards(id).windows(2) {
             let length = (now.position[w[1]] - now.position[w[0]]).norm();
             if distance + length >= wanted {
                 let t = (wanted - distance) / length;
@@ -179,11 +179,7 @@ impl Updated {
             for (ring, tracers) in (0..=b.region.holes.len()).zip(rings.by_ref()) {
                 let now = tracers.iter().map(|t| match t.face {
                     None => (t.position, t.velocity),
-                    Some((crack, face, end)) => {
-                        let crack = &self.state.cracks[crack as usize];
-                        let k = if end == 0 { 0 } else { crack.position.len() - 1 };
-                        (crack.faces[face as usize][k], crack.velocities[face as usize][k])
-                    }
+                    Some((id, face)) => self.state.cracks[id.crack].face_end(id.end, face),
                 });
                 let (position, velocity) = now.unzip();
                 frames.push(OutlineFrame {
@@ -198,7 +194,7 @@ impl Updated {
         frames
     }
 
-    pub(super) fn frames_of_cracks(&self, cracks: &[Crack]) -> Vec<CrackFrame> {
+    pub(super) fn frames_of_cracks(&self, cracks: &Cracks) -> Vec<CrackFrame> {
         let now = self.state.cracks.iter().enumerate();
         cracks
             .iter()

@@ -22,6 +22,7 @@ mod transfer;
 use crate::SimulationError;
 use crate::boundary::collider::Obstacle;
 use crate::crack::Crack;
+use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::division::{CrackLine, Division, TipCut};
 use crate::grid::Grid;
 use crate::grid::kernel;
@@ -32,7 +33,7 @@ use crate::solver::{Handover, Observed, Solver, SolverEnergies};
 use contact::ContactPair;
 use faces::{CrackNow, Tracer};
 use fissure_scene::{
-    CrackFrame, End, Kernel, Matrix, OutlineFrame, ParticleFrame, Point, Scene, SolverSettings, Transfer, Vector,
+    CrackFrame, Kernel, Matrix, OutlineFrame, ParticleFrame, Point, Scene, SolverSettings, Transfer, Vector,
 };
 use plastic::PlasticPart;
 use serde::{Deserialize, Serialize};
@@ -80,7 +81,7 @@ fn is_plastic(scene: &Scene) -> bool {
 impl State {
     /// Checks a state that was read: that its numbers are finite, and that it fits the scene, its number of `particles`
     /// and the cracks.
-    fn check(&self, scene: &Scene, particles: usize, cracks: &[Crack]) -> Fits {
+    fn check(&self, scene: &Scene, particles: usize, cracks: &Cracks) -> Fits {
         let counts = [self.points.len(), self.affine.len(), self.plastic.len()];
         let expected =
             [particles, if has_affine(scene) { particles } else { 0 }, if is_plastic(scene) { particles } else { 0 }];
@@ -94,7 +95,7 @@ impl State {
             saved::finite("a particle", part.gradient.iter().chain([&part.hardening]))?;
         }
         let fits = |(now, crack): (&CrackNow, &Crack)| now.rest == crack.points && now.is_even();
-        let same = self.cracks.len() == cracks.len() && self.cracks.iter().zip(cracks).all(fits);
+        let same = self.cracks.len() == cracks.len() && self.cracks.iter().zip(cracks.iter()).all(fits);
         saved::ensure(same, "the place of a crack")?;
         self.cracks.iter().try_for_each(|now| saved::finite("a crack", now.numbers()))?;
         let rings: usize = scene.bodies.iter().map(|body| 1 + body.region.holes.len()).sum();
@@ -146,7 +147,7 @@ impl Updated {
     ///
     /// # Errors
     /// When a load or support selects nothing.
-    pub(crate) fn new(scene: &Scene, particles: Arc<Particles>, cracks: &[Crack]) -> Result<Self, SimulationError> {
+    pub(crate) fn new(scene: &Scene, particles: Arc<Particles>, cracks: &Cracks) -> Result<Self, SimulationError> {
         let count = particles.len();
         let points = particles
             .rest
@@ -177,7 +178,7 @@ impl Updated {
     pub(crate) fn take_over(
         scene: &Scene,
         particles: Arc<Particles>,
-        cracks: &[Crack],
+        cracks: &Cracks,
         handover: Handover,
     ) -> Result<Self, SimulationError> {
         let mut solver = Self::new(scene, particles, cracks)?;
@@ -200,7 +201,7 @@ impl Updated {
     pub(crate) fn restore(
         scene: &Scene,
         particles: Arc<Particles>,
-        cracks: &[Crack],
+        cracks: &Cracks,
         bytes: &[u8],
     ) -> Result<Self, SimulationError> {
         let state: State = saved::from_bytes(bytes)?;
@@ -257,7 +258,7 @@ impl Updated {
     }
 
     /// The cracks where they are now, ready to divide pairs.
-    fn division_now(&self, cracks: &[Crack]) -> Division {
+    fn division_now(&self, cracks: &Cracks) -> Division {
         // A line from a particle inside the body to a node outside may pass a mouth by as much as the kernel reaches.
         let reach = 0.5 * kernel::width(self.settings.kernel) as f64;
         let beyond = 2.0 * reach * self.scene.cell_size;
@@ -311,7 +312,7 @@ impl Solver for Updated {
 
     fn step(
         &mut self,
-        cracks: &[Crack],
+        cracks: &Cracks,
         time: f64,
         time_step: f64,
         observe: &mut dyn FnMut(&dyn Observed),
@@ -342,7 +343,7 @@ impl Solver for Updated {
         Ok(())
     }
 
-    fn recut(&mut self, cracks: &[Crack], changed: &[(usize, End)]) {
+    fn recut(&mut self, cracks: &Cracks, changed: &[TipId]) {
         self.take_up(cracks, changed);
     }
 
@@ -360,7 +361,7 @@ impl Solver for Updated {
         self.motion.fill(Motion::default());
     }
 
-    fn hand_over(&mut self, _cracks: &[Crack]) -> Option<Handover> {
+    fn hand_over(&mut self, _cracks: &Cracks) -> Option<Handover> {
         None
     }
 
@@ -401,7 +402,7 @@ impl Solver for Updated {
         self.frames_of_outlines()
     }
 
-    fn crack_frames(&self, cracks: &[Crack]) -> Vec<CrackFrame> {
+    fn crack_frames(&self, cracks: &Cracks) -> Vec<CrackFrame> {
         self.frames_of_cracks(cracks)
     }
 

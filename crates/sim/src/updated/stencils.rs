@@ -2,7 +2,7 @@
 
 use super::Updated;
 use crate::SimulationError;
-use crate::crack::Crack;
+use crate::crack::cracks::Cracks;
 use crate::crack::division::CrossedSet;
 use crate::grid::kernel::{self, Stencil};
 use crate::grid::spans::{Span, SpanRows};
@@ -225,7 +225,7 @@ impl Updated {
     ///
     /// # Errors
     /// When material has gone so far away that the grid would become too large.
-    pub(super) fn lay_grid(&mut self, cracks: &[Crack], time: f64) -> Result<(), SimulationError> {
+    pub(super) fn lay_grid(&mut self, cracks: &Cracks, time: f64) -> Result<(), SimulationError> {
         let (mut low, mut high) = fissure_plane::bounds(&[]);
         for p in &self.state.points {
             (low, high) = (low.inf(&p.position), high.sup(&p.position));

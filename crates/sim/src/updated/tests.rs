@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::test_scenes::{add_body, add_crack, always, free_body, rectangle, set_motion};
-use fissure_scene::{BoxSide, CrackEnd, Kernel, Load, LoadKind, Plasticity, Selection, Support, TipDivision};
+use fissure_scene::{BoxSide, CrackEnd, End, Kernel, Load, LoadKind, Plasticity, Selection, Support, TipDivision};
 
 const KERNELS: [Kernel; 4] = [Kernel::Bilinear, Kernel::Gimp, Kernel::Quadratic, Kernel::Cubic];
 const TRANSFERS: [Transfer; 5] =
@@ -10,14 +10,14 @@ const TRANSFERS: [Transfer; 5] =
 
 struct Run {
     solver: Updated,
-    cracks: Vec<Crack>,
+    cracks: Cracks,
     time: f64,
 }
 
 impl Run {
     fn new(scene: &Scene) -> Self {
         let particles = Particles::fill(scene).unwrap();
-        let cracks = Crack::of_scene(scene);
+        let cracks = Cracks::of_scene(scene);
         Self { solver: Updated::new(scene, Arc::new(particles), &cracks).unwrap(), cracks, time: 0.0 }
     }
 
@@ -342,16 +342,16 @@ fn growth_keeps_momentum_and_follows_the_material() {
     run.steps(100, 0.4 * run.solver.stable_time_step());
     let before = run.momentum();
     let target = Point::new(0.93, 0.62);
-    run.cracks[0].push(End::End, target);
+    run.cracks.push(TipId::new(0, End::End), target);
     let (solver, cracks) = (&mut run.solver, &run.cracks);
-    solver.recut(cracks, &[(0, End::End)]);
+    solver.recut(cracks, &[TipId::new(0, End::End)]);
     assert_eq!(run.momentum(), before);
     let frame = run.solver.particle_frame();
     let near = (0..frame.len())
         .min_by(|&a, &b| (frame.rest[a] - target).norm().total_cmp(&(frame.rest[b] - target).norm()))
         .unwrap();
     let expected = frame.position[near] + frame.deformation_gradient[near] * (target - frame.rest[near]);
-    let (tip, _) = run.solver.observed().tip_now(&run.cracks, 0, End::End);
+    let (tip, _) = run.solver.observed().tip_now(&run.cracks, TipId::new(0, End::End));
     assert!((tip - expected).norm() < 0.02 * scene.cell_size, "{tip} {expected}");
     run.steps(20, 0.4 * run.solver.stable_time_step());
     assert!((run.momentum() - before).norm() < 1e-12 * before.norm());

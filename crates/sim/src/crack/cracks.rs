@@ -1,0 +1,124 @@
+//! All cracks of a run, and how a tip among them is named.
+
+use super::{Crack, Tip};
+use crate::saved::{self, Fits};
+use fissure_scene::{CrackEnd, End, Point, Scene, Vector};
+use serde::{Deserialize, Serialize};
+use std::ops::Deref;
+
+/// Both ends of a crack.
+pub(crate) const ENDS: [End; 2] = [End::Start, End::End];
+
+/// One end of one crack: what a tip is known by, for as long as the run lasts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub(crate) struct TipId {
+    /// Number of the crack.
+    pub(crate) crack: usize,
+    /// Its end.
+    pub(crate) end: End,
+}
+
+impl TipId {
+    /// The tip at `end` of the crack number `crack`.
+    pub(crate) fn new(crack: usize, end: End) -> Self {
+        Self { crack, end }
+    }
+
+    /// Checks that a tip that was read is an end of one of `cracks` cracks.
+    ///
+    /// # Errors
+    /// [`SimulationError::BadState`](crate::SimulationError::BadState)
+    pub(crate) fn check(self, cracks: usize) -> Fits {
+        saved::ensure(self.crack < cracks, "the crack of a tip")
+    }
+}
+
+/// All cracks. What looks at a tip is handed them and a [`TipId`]; numbers of cracks never change, new ones are added at the end.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(crate) struct Cracks(Vec<Crack>);
+
+impl Deref for Cracks {
+    type Target = [Crack];
+
+    fn deref(&self) -> &[Crack] {
+        &self.0
+    }
+}
+
+impl Cracks {
+    /// The cracks that a scene begins with.
+    pub(crate) fn of_scene(scene: &Scene) -> Self {
+        Self(scene.cracks.iter().map(|crack| Crack::drawn(scene, crack)).collect())
+    }
+
+    /// Every end of every crack, in order.
+    pub(crate) fn ids(&self) -> impl Iterator<Item = TipId> {
+        (0..self.len()).flat_map(|crack| ENDS.into_iter().map(move |end| TipId::new(crack, end)))
+    }
+
+    /// The ends with a live tip, in order.
+    pub(crate) fn live(&self) -> Vec<TipId> {
+        self.ids().filter(|&id| self.tip(id).is_some_and(|tip| tip.state.is_live())).collect()
+    }
+
+    /// The crack that `id` is an end of.
+    pub(crate) fn of(&self, id: TipId) -> &Crack {
+        &self.0[id.crack]
+    }
+
+    /// The tip there; none where the drawing has no live tip.
+    pub(crate) fn tip(&self, id: TipId) -> Option<&Tip> {
+        self.of(id).tip(id.end)
+    }
+
+    /// As [`Cracks::tip`], to be changed.
+    pub(crate) fn tip_mut(&mut self, id: TipId) -> Option<&mut Tip> {
+        self.0[id.crack].tip_mut(id.end)
+    }
+
+    /// All tips, to be changed.
+    pub(crate) fn tips_mut(&mut self) -> impl Iterator<Item = &mut Tip> {
+        self.0.iter_mut().flat_map(Crack::tips_mut)
+    }
+
+    /// What is at the end: a tip, a mouth, another crack.
+    pub(crate) fn end(&self, id: TipId) -> CrackEnd {
+        self.of(id).end(id.end)
+    }
+
+    /// Where the end is at rest [m].
+    pub(crate) fn position(&self, id: TipId) -> Point {
+        self.of(id).tip_position(id.end)
+    }
+
+    /// Unit vector ahead of the end at rest: see [`Crack::ahead`].
+    pub(crate) fn ahead(&self, id: TipId, over: f64) -> Vector {
+        self.of(id).ahead(id.end, over)
+    }
+
+    /// Unit vector of the last segment at rest, pointing ahead of the end.
+    pub(crate) fn last_direction(&self, id: TipId) -> Vector {
+        self.of(id).last_direction(id.end)
+    }
+
+    /// Adds a crack. Returns its number.
+    pub(crate) fn add(&mut self, crack: Crack) -> usize {
+        self.0.push(crack);
+        self.0.len() - 1
+    }
+
+    /// Makes the end something else.
+    pub(crate) fn set_end(&mut self, id: TipId, end: CrackEnd) {
+        self.0[id.crack].set_end(id.end, end);
+    }
+
+    /// Adds a point at the end.
+    pub(crate) fn push(&mut self, id: TipId, point: Point) {
+        self.0[id.crack].push(id.end, point);
+    }
+
+    /// Moves the last point of the end.
+    pub(crate) fn move_end(&mut self, id: TipId, to: Point) {
+        self.0[id.crack].move_end(id.end, to);
+    }
+}
