@@ -1,8 +1,10 @@
 //! How much memory a run takes: counted from the sizes of what it holds, before any of it is there.
 
 use crate::SimulationError;
+use crate::foresight::Course;
 use crate::free_memory::available;
 use crate::grid::kernel;
+use crate::material::elastic::Elastic;
 use crate::total::Total;
 use crate::updated::Updated;
 use fissure_plane::{Matrix, Point, Vector, polyline_length};
@@ -23,6 +25,8 @@ pub(crate) struct Amounts {
     pub(crate) crack_particles: f64,
     /// Cells within reach of cracks.
     pub(crate) crack_cells: f64,
+    /// Length by which cracks are expected to grow, in cells.
+    pub(crate) grown_cells: f64,
 }
 
 /// What a formulation of the solver holds [bytes].
@@ -43,6 +47,16 @@ const PROGRAM: f64 = 10.5 * MEBIBYTE;
 
 /// What the division keeps for each cell near a crack: its entry in the map, and a list of a few segments [bytes].
 const NEAR_CELL: f64 = 128.0;
+
+/// What each cell of growth adds: particles cut anew, eight points of either face with their stencils, in states and frames too, and
+/// their part in making a mesh [bytes]. 30 to 65 kB were taken where cracks grow by 60 to 500 cells.
+const GROWN_CELL: f64 = 45e3;
+
+/// What the allocator keeps of what it was given back, as a part of what is needed, and at most [bytes]: large pieces go back to the
+/// system. Gaps come up by and by, within some twenty frames.
+const KEPT_PART: f64 = 0.25;
+const KEPT_AT_MOST: f64 = 7.0 * MEBIBYTE;
+const FRAMES_TO_GAPS: f64 = 24.0;
 
 /// What making a mesh takes for each vertex of the outlines [bytes].
 const MESH_PER_POINT: f64 = 1000.0;
@@ -78,6 +92,8 @@ impl Amounts {
         let segments = scene.cracks.iter().flat_map(|c| c.points.windows(2));
         let crack_cells: f64 = segments.map(|w| cells_around(w[0], w[1], h, reach)).sum();
         let particles = area / (s * s);
+        let elastic: Vec<Elastic> = scene.materials.iter().map(|m| Elastic::new(m, scene.plane)).collect();
+        let grown_cells = Course::of(scene, &elastic).growth / h;
         let crack_particles = (crack_cells * (h / s).powi(2)).min(particles);
         Self {
             particles,
@@ -86,6 +102,7 @@ impl Amounts {
             cut_particles: (outline / s + crack_particles).min(particles),
             crack_particles,
             crack_cells,
+            grown_cells,
         }
     }
 }
@@ -113,13 +130,16 @@ pub(crate) fn needed(scene: &Scene, formulation: Formulation) -> f64 {
         _ => Total::memory(scene, &amounts),
     };
     let frame = amounts.particles * FRAME_PARTICLE as f64 + amounts.outline_points * FRAME_OUTLINE_POINT as f64;
-    PROGRAM
+    let needed = PROGRAM
         + amounts.particles * PARTICLE as f64
         + amounts.outline_points * MESH_PER_POINT
         + amounts.crack_cells * NEAR_CELL
+        + amounts.grown_cells * GROWN_CELL
         + need.solver
         + FRAMES * frame
-        + STATES * need.state
+        + STATES * need.state;
+    let gaps = (scene.frames.count().saturating_sub(1) as f64 / FRAMES_TO_GAPS).min(1.0);
+    needed + gaps * (KEPT_PART * needed).min(KEPT_AT_MOST)
 }
 
 /// Checks that a run fits into the memory there is, where that is known.
