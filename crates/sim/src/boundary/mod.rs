@@ -1,4 +1,6 @@
 //! What acts on bodies from outside, whatever the formulation.
 
 pub(crate) mod collider;
+pub(crate) mod loads;
 pub(crate) mod selector;
+pub(crate) mod supports;

@@ -4,24 +4,83 @@
 //! fields, one for each set of (crack, side) that particles cross on the way to the node; their number is not limited,
 //! and a scene without a crack has none.
 
-use crate::crack::division::CrossedSet;
+use crate::crack::crossing::Side;
+use crate::crack::division::{CrossedSet, facing};
 use crate::saved::{self, Fits};
+use rustc_hash::FxHashMap;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 
-/// The further fields of all nodes.
+/// A field besides a node's own.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct FurtherField {
+    node: u32,
+    /// What particles cross on their way to the node.
+    crossed: CrossedSet,
+}
+
+/// The fields of all nodes.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(from = "SavedFields", into = "SavedFields")]
 pub(crate) struct Fields {
     nodes: usize,
-    of_node: BTreeMap<u32, Vec<(CrossedSet, u32)>>,
-    /// Node of each further field, in the order of their numbers.
-    node_of: Vec<u32>,
+    /// In the order of their numbers, the first of which is `nodes`.
+    further: Vec<FurtherField>,
+    /// Numbers of the further fields of each node that has some, rising.
+    of_node: FxHashMap<u32, Vec<u32>>,
+}
+
+/// What tells all of [`Fields`].
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(rename = "Fields")]
+struct SavedFields {
+    nodes: usize,
+    further: Vec<FurtherField>,
+}
+
+impl From<SavedFields> for Fields {
+    fn from(saved: SavedFields) -> Self {
+        let mut of_node: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
+        for (number, field) in (saved.nodes as u32..).zip(&saved.further) {
+            of_node.entry(field.node).or_default().push(number);
+        }
+        Self { nodes: saved.nodes, further: saved.further, of_node }
+    }
+}
+
+impl From<Fields> for SavedFields {
+    fn from(fields: Fields) -> Self {
+        Self { nodes: fields.nodes, further: fields.further }
+    }
+}
+
+/// Two fields of one node on the two sides of one crack.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct FacingFields {
+    pub(crate) first: u32,
+    pub(crate) second: u32,
+    pub(crate) crack: u32,
+    /// Side of the crack that the first is on.
+    side: Side,
+}
+
+impl FacingFields {
+    /// The field above the crack and the one below.
+    pub(crate) fn above_and_below(&self) -> [u32; 2] {
+        if self.side == Side::Above { [self.first, self.second] } else { [self.second, self.first] }
+    }
 }
 
 impl Fields {
     /// No further fields on `nodes` nodes.
     pub(crate) fn new(nodes: usize) -> Self {
-        Self { nodes, of_node: BTreeMap::new(), node_of: Vec::new() }
+        Self { nodes, ..Self::default() }
+    }
+
+    /// Forgets all further fields; from now on there are so many `nodes`.
+    pub(crate) fn clear(&mut self, nodes: usize) {
+        self.nodes = nodes;
+        self.further.clear();
+        self.of_node.clear();
     }
 
     /// Checks fields that were read against so many `nodes` and `cracks`.
@@ -30,25 +89,34 @@ impl Fields {
     /// [`SimulationError::BadState`](crate::SimulationError::BadState)
     pub(crate) fn check(&self, nodes: usize, cracks: usize) -> Fits {
         saved::ensure(self.nodes == nodes, "its number of nodes")?;
-        saved::below("a field", self.node_of.iter().copied(), nodes)?;
-        for (&node, fields) in &self.of_node {
-            for (crossed, field) in fields {
-                saved::below("a field", crossed.iter().map(|(crack, _)| *crack), cracks)?;
-                let further = (*field as usize).checked_sub(nodes).and_then(|further| self.node_of.get(further));
-                saved::ensure(further == Some(&node), "a field of a node")?;
-            }
-        }
-        Ok(())
+        saved::below("a field", self.further.iter().map(|field| field.node), nodes)?;
+        let crossed = self.further.iter().flat_map(|field| &field.crossed);
+        saved::below("a field", crossed.map(|(crack, _)| *crack), cracks)
     }
 
     /// Number of fields of all nodes together.
     pub(crate) fn len(&self) -> usize {
-        self.nodes + self.node_of.len()
+        self.nodes + self.further.len()
+    }
+
+    /// Number of further fields.
+    pub(crate) fn further_count(&self) -> usize {
+        self.further.len()
+    }
+
+    /// The nodes of the further fields, in the order of the fields.
+    pub(crate) fn nodes_of_further(&self) -> impl Iterator<Item = usize> {
+        self.further.iter().map(|field| field.node as usize)
     }
 
     /// The node a field belongs to.
     pub(crate) fn node(&self, field: usize) -> usize {
-        if field < self.nodes { field } else { self.node_of[field - self.nodes] as usize }
+        if field < self.nodes { field } else { self.further[field - self.nodes].node as usize }
+    }
+
+    /// What particles of a field cross on their way to its node.
+    pub(crate) fn crossed(&self, field: usize) -> &[(u32, Side)] {
+        field.checked_sub(self.nodes).map_or(&[], |further| &self.further[further].crossed)
     }
 
     /// The field at `node` for particles across `crossed`, if it exists.
@@ -56,12 +124,12 @@ impl Fields {
         if crossed.is_empty() {
             return Some(node);
         }
-        let fields = self.of_node.get(&(node as u32))?;
-        fields.iter().find(|(set, _)| set == crossed).map(|&(_, field)| field as usize)
+        let mut fields = self.of(node).iter().map(|&field| field as usize);
+        fields.find(|&field| self.crossed(field) == crossed.as_slice())
     }
 
-    /// The further fields of a node, each with its crossed set.
-    pub(crate) fn of(&self, node: usize) -> &[(CrossedSet, u32)] {
+    /// The further fields of a node, rising.
+    pub(crate) fn of(&self, node: usize) -> &[u32] {
         self.of_node.get(&(node as u32)).map_or(&[], Vec::as_slice)
     }
 
@@ -71,13 +139,47 @@ impl Fields {
             return field;
         }
         let field = self.len();
-        self.node_of.push(node as u32);
-        self.of_node.entry(node as u32).or_default().push((crossed.clone(), field as u32));
+        self.further.push(FurtherField { node: node as u32, crossed: crossed.clone() });
+        self.of_node.entry(node as u32).or_default().push(field as u32);
         field
     }
 
-    /// Nodes that have further fields, rising, each with (crossed set, field).
-    pub(crate) fn divided_nodes(&self) -> impl Iterator<Item = (usize, &[(CrossedSet, u32)])> {
-        self.of_node.iter().map(|(&node, fields)| (node as usize, fields.as_slice()))
+    /// Nodes that have further fields, rising.
+    pub(crate) fn divided_nodes(&self) -> Vec<usize> {
+        let mut nodes: Vec<usize> = self.of_node.keys().map(|&node| node as usize).collect();
+        nodes.sort_unstable();
+        nodes
+    }
+
+    /// All pairs of `fields`, which are of one node, that face each other across one crack.
+    pub(crate) fn facing_pairs(&self, fields: &[u32]) -> impl Iterator<Item = FacingFields> {
+        let pairs = fields
+            .iter()
+            .enumerate()
+            .flat_map(|(k, &first)| fields[k + 1..].iter().map(move |&second| (first, second)));
+        pairs.filter_map(|(first, second)| {
+            let (crack, side) = facing(self.crossed(first as usize), self.crossed(second as usize))?;
+            Some(FacingFields { first, second, crack, side })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    /// Truth: the drawing. Node 7 lies between crack 0 above it and crack 1 below it: three fields, of which the outer two see each other across both
+    /// cracks and do not face.
+    #[test]
+    fn fields_face_across_one_crack() {
+        let mut fields = Fields::new(10);
+        let above = fields.find_or_add(7, &vec![(0, Side::Above)]) as u32;
+        let below = fields.find_or_add(7, &vec![(1, Side::Below)]) as u32;
+        assert_eq!(fields.find_or_add(7, &vec![(0, Side::Above)]) as u32, above);
+        let found: Vec<_> = fields.facing_pairs(&[7, above, below]).map(|p| (p.crack, p.above_and_below())).collect();
+        assert_eq!(found, [(0, [above, 7]), (1, [7, below])]);
+        let bytes = saved::to_bytes(&fields).unwrap();
+        assert_eq!(saved::from_bytes::<Fields>(&bytes).unwrap(), fields);
     }
 }

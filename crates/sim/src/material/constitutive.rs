@@ -30,6 +30,21 @@ pub fn volume_change(h: &Matrix) -> f64 {
     h.m11 + h.m22 + (h.m11 * h.m22 - h.m12 * h.m21)
 }
 
+/// F = [[e, -g], [g, e]] + [[d, s], [s, -d]], a rotation and a reflection with their sizes; gives [[e, g], [d, s]] [–].
+#[inline]
+fn rotation_and_reflection(h: &Matrix) -> [[f64; 2]; 2] {
+    let rotation = [1.0 + 0.5 * (h.m11 + h.m22), 0.5 * (h.m21 - h.m12)];
+    let reflection = [0.5 * (h.m11 - h.m22), 0.5 * (h.m21 + h.m12)];
+    [rotation, reflection]
+}
+
+/// The principal stretches of F = I + `h`, the largest first [–]: its singular values; the smaller carries the sign of det F.
+#[inline]
+pub(crate) fn principal_stretches(h: &Matrix) -> [f64; 2] {
+    let [q, p] = rotation_and_reflection(h).map(|[x, y]| x.hypot(y));
+    [q + p, q - p]
+}
+
 /// First Piola–Kirchhoff stress P = 2μ(F - R) + λ(J-1) J F⁻ᵀ [Pa] of the displacement gradient `h` = F - I [–].
 ///
 /// Source: Stomakhin et al. 2013. `lambda` is that of the plane state ([`crate::Elastic`]). Finite for every finite
@@ -113,14 +128,9 @@ struct SingularValues {
 
 impl SingularValues {
     fn of_identity_plus(h: &Matrix) -> Self {
-        // F is a rotation times q plus a reflection times p: [[e, -g], [g, e]] + [[d, s], [s, -d]].
-        let e = 1.0 + 0.5 * (h.m11 + h.m22);
-        let g = 0.5 * (h.m21 - h.m12);
-        let d = 0.5 * (h.m11 - h.m22);
-        let s = 0.5 * (h.m21 + h.m12);
-        let (q, p) = (e.hypot(g), d.hypot(s));
+        let [[e, g], [d, s]] = rotation_and_reflection(h);
         let (turn, axis) = (g.atan2(e), s.atan2(d));
-        Self { values: [q + p, q - p], left: 0.5 * (turn + axis), right: 0.5 * (turn - axis) }
+        Self { values: principal_stretches(h), left: 0.5 * (turn + axis), right: 0.5 * (turn - axis) }
     }
 }
 
@@ -147,6 +157,16 @@ mod tests {
     }
 
     proptest! {
+        /// Truth: σ₁ σ₂ = det F and σ₁² + σ₂² = |F|². Terms of order 1, some ten of them.
+        #[test]
+        fn principal_stretches_are_the_singular_values(h in any_gradient(3.0)) {
+            let [large, small] = principal_stretches(&h);
+            let f = Matrix::identity() + h;
+            prop_assert!(large >= small.abs());
+            prop_assert!((large * small - f.determinant()).abs() < 1e-13 * f.norm_squared());
+            prop_assert!((large * large + small * small - f.norm_squared()).abs() < 1e-14 * f.norm_squared());
+        }
+
         /// Central difference with step d: error d²·|Ψ'''|/6 + ε|Ψ|/d, about 1e-9 at d = 1e-5 with moduli of order 1.
         #[test]
         fn stress_is_the_derivative_of_energy(h in any_gradient(0.4), angle in -PI..PI) {

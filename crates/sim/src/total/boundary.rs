@@ -4,8 +4,10 @@ use super::Total;
 use super::cut::Probe;
 use super::refresh::Near;
 use crate::SimulationError;
+use crate::boundary::loads::{self, ForcePlace};
 use crate::boundary::selector::Selector;
-use fissure_scene::{LoadKind, Point, Selection, Vector};
+use crate::boundary::supports::prescribed;
+use fissure_scene::{Point, Vector};
 
 /// A force at a place of the material.
 #[derive(Debug, Clone)]
@@ -46,63 +48,18 @@ fn surface_node(field: usize, place: Point, part: f64, h: f64) -> Option<Surface
 impl Total {
     /// The forces of each load.
     pub(super) fn point_forces(&self) -> Result<Vec<Vec<PointForce>>, SimulationError> {
-        let mut loads = Vec::new();
-        for (index, load) in self.scene.loads.iter().enumerate() {
-            let forces = match &load.kind {
-                LoadKind::Force(total) => {
-                    let selected = self.particles.select(&self.scene, &load.selection);
-                    let volume: f64 = selected.iter().map(|&p| self.particles.volume[p as usize]).sum();
-                    selected
-                        .iter()
-                        .map(|&p| {
-                            let place = self.particles.rest[p as usize];
-                            PointForce {
-                                probe: self.probe(place, place),
-                                force: total * (self.particles.volume[p as usize] / volume),
-                            }
-                        })
-                        .collect()
-                }
-                LoadKind::Traction(traction) => self.traction_forces(&load.selection, *traction),
-                LoadKind::PerPoint(values) => values
-                    .iter()
-                    .map(|&(place, force)| {
-                        let nearest = self.nearest_particle(place);
-                        PointForce { probe: self.probe(nearest, nearest), force }
-                    })
-                    .collect::<Vec<_>>(),
+        let on_probe = |at: loads::PointForce| {
+            let place = match at.place {
+                ForcePlace::Particle(p) => self.particles.rest[p as usize],
+                ForcePlace::Outline(place) => place,
             };
-            if forces.is_empty() {
-                return Err(self.particles.no_particle("load", index, &load.selection).into());
-            }
-            loads.push(forces);
-        }
-        Ok(loads)
-    }
-
-    fn nearest_particle(&self, place: Point) -> Point {
-        let mut nearest = self.particles.rest[0];
-        for &p in &self.particles.rest {
-            if (p - place).norm_squared() < (nearest - place).norm_squared() {
-                nearest = p;
-            }
-        }
-        nearest
-    }
-
-    /// A traction on an edge, by the length between neighbouring places.
-    fn traction_forces(&self, selection: &Selection, traction: Vector) -> Vec<PointForce> {
-        let mut forces = Vec::new();
-        for [a, b] in Selector::new(&self.scene, selection).pieces(&self.scene) {
-            // One place in the middle of each half cell, so that every node gets the load of its hat.
-            let pieces = ((b - a).norm() / self.particles.spacing).round().max(1.0) as usize;
-            for k in 0..pieces {
-                let place = a + (b - a) * ((k as f64 + 0.5) / pieces as f64);
-                let force = traction * ((b - a).norm() / pieces as f64);
-                forces.push(PointForce { probe: self.probe(place, place), force });
-            }
-        }
-        forces
+            PointForce { probe: self.probe(place, place), force: at.force }
+        };
+        let of_load = |index| {
+            let forces = loads::forces_of_load(&self.scene, &self.particles, index)?;
+            Ok(forces.into_iter().map(on_probe).collect())
+        };
+        (0..self.scene.loads.len()).map(of_load).collect()
     }
 
     /// Lays the places of loads anew where something has changed.
@@ -206,7 +163,7 @@ impl Total {
             nodes.extend(around.filter(|&(_, place)| near.contains(place)));
         }
         let further = |&(node, place): &(usize, Point)| {
-            self.state.fields.of(node).iter().map(move |(_, field)| (*field as usize, place))
+            self.state.fields.of(node).iter().map(move |&field| (field as usize, place))
         };
         let mut fields: Vec<(usize, Point)> = nodes.iter().flat_map(further).collect();
         fields.append(&mut nodes);
@@ -275,16 +232,12 @@ impl Total {
         let middle = time + 0.5 * time_step;
         let mut work = 0.0;
         for c in &self.constraints {
-            let support = &self.scene.supports[c.support as usize];
-            let factor = support.curve.value(middle);
             let d = c.field as usize;
-            for axis in 0..2 {
-                let Some(speed) = support.velocity[axis] else { continue };
-                let before = self.state.velocity[axis][d];
-                let after = speed * factor;
+            for held in prescribed(&self.scene.supports[c.support as usize], middle) {
+                let (before, after) = (self.state.velocity[held.axis][d], held.velocity());
                 // The force m (v' − v)/Δt acts along the prescribed motion.
                 work += self.state.mass[d] * (after - before) * after;
-                self.state.velocity[axis][d] = after;
+                self.state.velocity[held.axis][d] = after;
             }
         }
         for collider in &self.colliders {

@@ -11,8 +11,6 @@ use super::Total;
 use super::refresh::Near;
 use crate::crack::Crack;
 use crate::crack::cracks::Cracks;
-use crate::crack::crossing::Side;
-use crate::crack::division::{CrossedSet, facing};
 use fissure_scene::{Point, Vector};
 
 /// Two fields of one node on the two sides of one crack.
@@ -31,8 +29,8 @@ impl Total {
     /// All pairs of fields that face each other across one crack.
     pub(super) fn contact_pairs(&self, cracks: &Cracks) -> Vec<ContactPair> {
         let mut pairs = Vec::new();
-        for (node, further) in self.state.fields.divided_nodes() {
-            self.add_pairs_of_node(node, further, cracks, &mut pairs);
+        for node in self.state.fields.divided_nodes() {
+            self.add_pairs_of_node(node, cracks, &mut pairs);
         }
         pairs
     }
@@ -43,13 +41,13 @@ impl Total {
         let mut pairs = Vec::with_capacity(self.contacts.len() + 32);
         // Pairs are in the order of their nodes.
         let mut before = self.contacts.as_slice();
-        for (node, further) in self.state.fields.divided_nodes() {
+        for node in self.state.fields.divided_nodes() {
             let skipped = before.partition_point(|pair| node_of(pair) < node);
             let (own, rest) = before[skipped..].split_at(before[skipped..].partition_point(|p| node_of(p) == node));
             before = rest;
             if near.contains(self.grid.position(node)) {
                 let first = pairs.len();
-                self.add_pairs_of_node(node, further, cracks, &mut pairs);
+                self.add_pairs_of_node(node, cracks, &mut pairs);
                 // What the faces did to each other in this step they did, however the node is divided now: tips may be measured again before the next.
                 for before in own {
                     if let Some(now) = pairs[first..].iter_mut().find(|p| p.crack == before.crack) {
@@ -64,25 +62,19 @@ impl Total {
         pairs
     }
 
-    fn add_pairs_of_node(
-        &self,
-        node: usize,
-        further: &[(CrossedSet, u32)],
-        cracks: &Cracks,
-        pairs: &mut Vec<ContactPair>,
-    ) {
-        let own = (Vec::new(), node as u32);
-        let all: Vec<_> =
-            std::iter::once(&own).chain(further).filter(|f| self.state.mass[f.1 as usize] > 0.0).collect();
-        for (k, first) in all.iter().enumerate() {
-            for second in &all[k + 1..] {
-                let Some((crack, side)) = facing(&first.0, &second.0) else { continue };
-                let (above, below) = if side == Side::Above { (first.1, second.1) } else { (second.1, first.1) };
-                let Some(line) = cracks.get(crack as usize) else { continue };
-                let segment = self.nearest_segment(crack, line, self.grid.position(node));
-                pairs.push(ContactPair { above, below, crack, segment: segment as u32, force: [0.0; 2] });
-            }
+    fn add_pairs_of_node(&self, node: usize, cracks: &Cracks, pairs: &mut Vec<ContactPair>) {
+        for facing in self.state.fields.facing_pairs(&self.fields_with_mass(node)) {
+            let Some(line) = cracks.get(facing.crack as usize) else { continue };
+            let [above, below] = facing.above_and_below();
+            let segment = self.nearest_segment(facing.crack, line, self.grid.position(node));
+            pairs.push(ContactPair { above, below, crack: facing.crack, segment: segment as u32, force: [0.0; 2] });
         }
+    }
+
+    /// The fields of a node that have mass, its own first.
+    pub(super) fn fields_with_mass(&self, node: usize) -> Vec<u32> {
+        let all = std::iter::once(node as u32).chain(self.state.fields.of(node).iter().copied());
+        all.filter(|&field| self.state.mass[field as usize] > 0.0).collect()
     }
 
     /// The segment of a crack nearest to `place`.

@@ -1,36 +1,20 @@
 //! The general path: particles with a stencil of their own, and probes that ride on the material.
 
-use super::{FieldVectors, NONE, Run, Total};
+use super::{FieldVectors, Run, Total};
 use crate::crack::Crack;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::crossing::Side;
+use crate::faces::outlines::{Outlines, Vertex};
 use crate::grid::Walker;
+use crate::grid::entries::{Entries, Entry};
 use crate::saved::{self, Fits};
 use fissure_scene::{CrackEnd, End, Matrix, Point, Vector};
 use serde::{Deserialize, Serialize};
 
-/// One (particle, field) pair.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(super) struct Entry {
-    /// Field.
-    pub(super) field: u32,
-    /// Weight times share [–].
-    pub(super) weight: f64,
-    /// Gradient of it [1/m].
-    pub(super) gradient: [f64; 2],
-}
-
-/// Particles with stored stencils, in compressed rows.
+/// Particles with stored stencils.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct CutParticles {
-    /// Row of each particle, or `NONE`.
-    row: Vec<u32>,
-    /// Particle of each row.
-    particle: Vec<u32>,
-    /// First entry of each row; one more at the end.
-    first: Vec<u32>,
-    /// Entries of all rows.
-    entries: Vec<Entry>,
+    stencils: Entries,
     /// Displacement gradient of each row that no field accounts for: see [`CutParticles::set_misfit`].
     misfit: Vec<[f64; 4]>,
     /// Rows that have one.
@@ -39,14 +23,7 @@ pub(super) struct CutParticles {
 
 impl CutParticles {
     pub(super) fn new(particles: usize) -> Self {
-        Self {
-            row: vec![NONE; particles],
-            particle: Vec::new(),
-            first: vec![0],
-            entries: Vec::new(),
-            misfit: Vec::new(),
-            strained: Vec::new(),
-        }
+        Self { stencils: Entries::new(particles), misfit: Vec::new(), strained: Vec::new() }
     }
 
     /// Checks rows that were read against so many `particles` and `fields`.
@@ -54,37 +31,21 @@ impl CutParticles {
     /// # Errors
     /// [`SimulationError::BadState`](crate::SimulationError::BadState)
     pub(super) fn check(&self, particles: usize, fields: usize) -> Fits {
-        let rows = self.particle.len();
-        saved::ensure(self.row.len() == particles, "its number of particles")?;
-        saved::below("a row", self.particle.iter().copied(), particles)?;
-        let of_particle = |(row, &particle): (usize, &u32)| self.row[particle as usize] as usize == row;
-        saved::ensure(self.particle.iter().enumerate().all(of_particle), "a row of a particle")?;
-        saved::below("a particle", self.row.iter().copied().filter(|&row| row != NONE), rows)?;
-        let is_divided = self.first.len() == rows + 1
-            && self.first[0] == 0
-            && self.first[rows] as usize == self.entries.len()
-            && self.first.is_sorted();
-        saved::ensure(is_divided && self.misfit.len() == rows, "the division of its rows")?;
-        saved::below("a stencil", self.entries.iter().map(|e| e.field), fields)?;
-        saved::finite("a stencil", self.entries.iter().flat_map(|e| [&e.weight, &e.gradient[0], &e.gradient[1]]))?;
+        self.stencils.check(particles, fields)?;
+        let rows = self.stencils.rows();
+        saved::ensure(self.misfit.len() == rows, "the division of its rows")?;
         saved::finite("a row", self.misfit.iter().flatten())?;
         saved::below("a strained row", self.strained.iter().copied(), rows)
     }
 
     /// Entries of a particle, if it is on the general path.
     pub(super) fn entries_of(&self, particle: usize) -> Option<&[Entry]> {
-        let row = self.row[particle];
-        (row != NONE).then(|| self.row_entries(row as usize))
-    }
-
-    fn row_entries(&self, row: usize) -> &[Entry] {
-        &self.entries[self.first[row] as usize..self.first[row + 1] as usize]
+        self.stencils.of(particle)
     }
 
     /// What the displacement gradient of a particle is more than its fields make it.
     pub(super) fn misfit_of(&self, particle: usize) -> Matrix {
-        let row = self.row[particle];
-        if row == NONE { Matrix::zeros() } else { self.misfit_of_row(row as usize) }
+        self.stencils.row_of(particle).map_or_else(Matrix::zeros, |row| self.misfit_of_row(row))
     }
 
     fn misfit_of_row(&self, row: usize) -> Matrix {
@@ -97,14 +58,11 @@ impl CutParticles {
     /// When a crack turns, what lies ahead of its tip between the old and the new direction changes sides, and is attached to fields that may lie a good part of
     /// a cell away from those it had. Its strain must not jump for that: the difference is kept, and let go of slowly enough for the lattice to follow.
     pub(super) fn set_misfit(&mut self, particle: usize, misfit: Matrix) {
-        let row = self.row[particle];
-        if row == NONE {
-            return;
-        }
-        let was_strained = self.misfit[row as usize] != [0.0; 4];
-        self.misfit[row as usize] = [misfit.m11, misfit.m12, misfit.m21, misfit.m22];
+        let Some(row) = self.stencils.row_of(particle) else { return };
+        let was_strained = self.misfit[row] != [0.0; 4];
+        self.misfit[row] = [misfit.m11, misfit.m12, misfit.m21, misfit.m22];
         if !was_strained && misfit != Matrix::zeros() {
-            self.strained.push(row);
+            self.strained.push(row as u32);
         }
     }
 
@@ -121,29 +79,8 @@ impl CutParticles {
 
     /// Puts new stencils in the place of old ones; particles that had none are added.
     pub(super) fn replace(&mut self, stencils: Vec<(usize, Vec<Entry>)>) {
-        let mut news: Vec<Option<Vec<Entry>>> = vec![None; self.particle.len()];
-        for (particle, entries) in stencils {
-            if self.row[particle] == NONE {
-                self.row[particle] = self.particle.len() as u32;
-                self.particle.push(particle as u32);
-                news.push(Some(entries));
-            } else {
-                news[self.row[particle] as usize] = Some(entries);
-            }
-        }
-        let mut first = Vec::with_capacity(news.len() + 1);
-        let mut all = Vec::with_capacity(self.entries.len() + 64);
-        for (row, new) in news.into_iter().enumerate() {
-            first.push(all.len() as u32);
-            match new {
-                Some(entries) => all.extend(entries),
-                None => all.extend_from_slice(self.row_entries(row)),
-            }
-        }
-        first.push(all.len() as u32);
-        self.first = first;
-        self.entries = all;
-        self.misfit.resize(self.particle.len(), [0.0; 4]);
+        self.stencils.replace(stencils);
+        self.misfit.resize(self.stencils.rows(), [0.0; 4]);
     }
 }
 
@@ -156,6 +93,17 @@ pub(super) struct Probe {
     pub(super) nudged: Point,
     /// (field, weight).
     pub(super) entries: Vec<(u32, f64)>,
+}
+
+impl Vertex for Probe {
+    fn rest(&self) -> Point {
+        self.rest
+    }
+
+    fn is_at_mouth(&self) -> bool {
+        // Only the faces of cracks are decided on beside where they are.
+        self.nudged != self.rest
+    }
 }
 
 impl Probe {
@@ -203,17 +151,13 @@ impl Total {
                 let (w, g) = (stencil.weight(a, b), stencil.weight_gradient(a, b));
                 let Some(node) = nodes.at(a, b) else { continue };
                 if !near {
-                    entries.push(Entry { field: node as u32, weight: w, gradient: [g.x, g.y] });
+                    entries.push(Entry { field: node as u32, weight: w, gradient: g });
                     continue;
                 }
                 for share in self.division.pair(place, nodes.place(a, b)) {
                     let field = self.state.fields.find_or_add(node, &share.crossed);
                     let gradient = g * share.fraction + share.gradient * w;
-                    entries.push(Entry {
-                        field: field as u32,
-                        weight: w * share.fraction,
-                        gradient: [gradient.x, gradient.y],
-                    });
+                    entries.push(Entry { field: field as u32, weight: w * share.fraction, gradient });
                 }
             }
         }
@@ -321,22 +265,20 @@ impl Total {
         force_y: &mut [f64],
     ) {
         let cut = &self.state.cut;
-        for (row, &particle) in cut.particle.iter().enumerate() {
-            let entries = cut.row_entries(row);
+        for (row, (p, entries)) in cut.stencils.iter().enumerate() {
             let mut h = if with_misfits { cut.misfit_of_row(row) } else { Matrix::zeros() };
             for e in entries {
                 let (x, y) = (u[0][e.field as usize], u[1][e.field as usize]);
-                h.m11 += x * e.gradient[0];
-                h.m12 += x * e.gradient[1];
-                h.m21 += y * e.gradient[0];
-                h.m22 += y * e.gradient[1];
+                h.m11 += x * e.gradient.x;
+                h.m12 += x * e.gradient.y;
+                h.m21 += y * e.gradient.x;
+                h.m22 += y * e.gradient.y;
             }
-            let p = particle as usize;
             let elastic = &self.elastic[self.particles.material[p] as usize];
             let stress = crate::first_piola_stress(&h, elastic.mu, elastic.lambda) * self.particles.volume[p];
             for e in entries {
-                force_x[e.field as usize] -= stress.m11 * e.gradient[0] + stress.m12 * e.gradient[1];
-                force_y[e.field as usize] -= stress.m21 * e.gradient[0] + stress.m22 * e.gradient[1];
+                force_x[e.field as usize] -= stress.m11 * e.gradient.x + stress.m12 * e.gradient.y;
+                force_y[e.field as usize] -= stress.m21 * e.gradient.x + stress.m22 * e.gradient.y;
             }
         }
     }
@@ -353,7 +295,7 @@ impl Total {
         let nodes = self.grid.stencil(&stencil);
         let mass = |field: usize| self.state.mass[field];
         let has_material = |&node: &usize| {
-            mass(node) > 0.0 || self.state.fields.of(node).iter().any(|&(_, field)| mass(field as usize) > 0.0)
+            mass(node) > 0.0 || self.state.fields.of(node).iter().any(|&field| mass(field as usize) > 0.0)
         };
         let mut entries = Vec::with_capacity(8);
         for b in 0..stencil.width {
@@ -410,23 +352,7 @@ impl Total {
     /// Lays the probes of outlines and crack faces.
     pub(super) fn lay_probes(&mut self, cracks: &Cracks) {
         self.state.faces = cracks.iter().map(|c| self.face_probes(c)).collect();
-        let spacing = 0.5 * self.grid.cell_size;
-        let mut outlines = Vec::new();
-        for body in &self.scene.bodies {
-            for ring in body.region.rings() {
-                let mut probes = Vec::new();
-                for i in 0..ring.len() {
-                    let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
-                    let pieces = ((b - a).norm() / spacing).ceil().max(1.0) as usize;
-                    for k in 0..pieces {
-                        let place = a + (b - a) * (k as f64 / pieces as f64);
-                        probes.push(self.probe(place, place));
-                    }
-                }
-                outlines.push(probes);
-            }
-        }
-        self.state.outlines = outlines;
+        self.state.outlines = Outlines::at_rest(&self.scene, |place| self.probe(place, place));
         for id in cracks.ids().filter(|&id| cracks.end(id) == CrackEnd::Mouth) {
             self.open_mouth(cracks, id);
         }
@@ -450,32 +376,7 @@ impl Total {
     /// Doubles the outline where a crack mouths at it: the two new vertices are the end points of the faces.
     pub(super) fn open_mouth(&mut self, cracks: &Cracks, id: TipId) {
         let at = if id.end == End::Start { 0 } else { cracks.of(id).points.len() - 1 };
-        let place = cracks.position(id);
-        let [above, below] = [0, 1].map(|side| self.state.faces[id.crack][side][at].clone());
-        let mut best: Option<(f64, usize, usize)> = None;
-        for (ring, probes) in self.state.outlines.iter().enumerate() {
-            for k in 0..probes.len() {
-                let (a, b) = (probes[k].rest, probes[(k + 1) % probes.len()].rest);
-                let distance = fissure_plane::distance_to_segment(place, a, b);
-                if best.is_none_or(|x| distance < x.0) {
-                    best = Some((distance, ring, k));
-                }
-            }
-        }
-        let Some((_, ring, k)) = best else { return };
-        let probes = &mut self.state.outlines[ring];
-        // The material lies to the left of a ring. Walking along the ring, the left (above) of a crack that starts here and runs inward
-        // comes before the mouth, that of a crack that ends here after it.
-        let pair = if id.end == End::Start { [above, below] } else { [below, above] };
-        // A vertex that coincides with the mouth gives way to the pair.
-        let close = |p: &Probe| (p.rest - place).norm() < 1e-9 * self.grid.cell_size;
-        let next = (k + 1) % probes.len();
-        if close(&probes[next]) {
-            probes.splice(next..=next, pair);
-        } else if close(&probes[k]) {
-            probes.splice(k..=k, pair);
-        } else {
-            probes.splice(k + 1..k + 1, pair);
-        }
+        let faces = self.state.faces[id.crack].each_ref().map(|face| face[at].clone());
+        self.state.outlines.open_mouth(cracks.position(id), id.end, faces, self.grid.cell_size);
     }
 }

@@ -7,6 +7,7 @@ use crate::SimulationError;
 use crate::crack::DIRECTION_LENGTH;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::faces::crack_frame::crack_frame;
+use crate::material::constitutive::principal_stretches;
 use crate::solver::Observed;
 use crate::tip::frame::{side_of, tip_of, turn};
 use crate::tip::zone::{FaceContact, QuadraturePoint, TipZone};
@@ -207,9 +208,7 @@ impl Total {
                     "particle {p} has lost its finite state; use a smaller `solver.courant` or weaker loads"
                 )));
             }
-            // F has the largest singular value q + p.
-            let q = (1.0 + 0.5 * (h.m11 + h.m22)).hypot(0.5 * (h.m21 - h.m12));
-            let stretch = q + (0.5 * (h.m11 - h.m22)).hypot(0.5 * (h.m21 + h.m12));
+            let [stretch, _] = principal_stretches(&h);
             if volume_ratio < SMALLEST_VOLUME_RATIO || stretch > LARGEST_STRETCH {
                 return Err(SimulationError::OutOfRange {
                     time,
@@ -338,20 +337,7 @@ impl Total {
     }
 
     pub(super) fn frames_of_outlines(&self) -> Vec<OutlineFrame> {
-        let mut frames = Vec::new();
-        let mut rings = self.state.outlines.iter();
-        for (body, b) in self.scene.bodies.iter().enumerate() {
-            for (ring, probes) in (0..=b.region.holes.len()).zip(rings.by_ref()) {
-                frames.push(OutlineFrame {
-                    body: body as u32,
-                    ring: ring as u32,
-                    rest: probes.iter().map(|p| p.rest).collect(),
-                    position: probes.iter().map(|p| self.moved(p)).collect(),
-                    velocity: probes.iter().map(|p| p.value(&self.state.velocity)).collect(),
-                });
-            }
-        }
-        frames
+        self.state.outlines.frames(&self.scene, |probe| (self.moved(probe), probe.value(&self.state.velocity)))
     }
 
     pub(super) fn frames_of_cracks(&self, cracks: &Cracks) -> Vec<CrackFrame> {

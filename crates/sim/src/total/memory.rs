@@ -1,7 +1,8 @@
 //! What the solver holds, counted before it is there.
 
 use super::Total;
-use super::cut::{Entry, Probe};
+use super::cut::Probe;
+use crate::grid::entries::Entry;
 use crate::grid::kernel;
 use crate::memory::{Amounts, Need};
 use fissure_scene::{Kernel, Scene};

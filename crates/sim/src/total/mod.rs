@@ -23,6 +23,7 @@ use crate::crack::Crack;
 use crate::crack::cracks::{Cracks, ENDS, TipId};
 use crate::crack::crossing::Side;
 use crate::crack::division::{CrackLine, Division, TipCut};
+use crate::faces::outlines::Outlines;
 use crate::grid::Grid;
 use crate::grid::fields::Fields;
 use crate::grid::kernel;
@@ -61,7 +62,7 @@ struct State {
     /// Runs of uncut cells above each row of nodes.
     runs: Vec<Vec<Run>>,
     /// The rings as probes, doubled at mouths.
-    outlines: Vec<Vec<Probe>>,
+    outlines: Outlines<Probe>,
     /// Faces of the cracks, above and below.
     faces: Vec<[Vec<Probe>; 2]>,
     /// Work done by loads, supports and colliders so far [J/m].
@@ -100,8 +101,6 @@ pub(crate) struct Total {
     steps_since_check: u32,
 }
 
-const NONE: u32 = u32::MAX;
-
 impl Total {
     /// Lays the lattice and cuts it by the initial cracks.
     pub(crate) fn new(scene: &Scene, particles: Arc<Particles>, cracks: &Cracks) -> Result<Self, SimulationError> {
@@ -127,7 +126,7 @@ impl Total {
             velocity: zeros(),
             cut: CutParticles::new(particles.len()),
             runs: vec![Vec::new(); grid.rows()],
-            outlines: Vec::new(),
+            outlines: Outlines::default(),
             faces: Vec::new(),
             external_work: 0.0,
             ties: Ties::default(),
@@ -196,13 +195,12 @@ impl Total {
             saved::ensure(runs.iter().all(|run| run.lies_in(&row.nodes, &above)), "a run of cells")?;
         }
         saved::below("a run of cells", state.runs.iter().flatten().map(|run| run.material), self.elastic.len())?;
-        let rings = state.outlines.len() == self.state.outlines.len() && state.outlines.iter().all(|r| r.len() >= 3);
-        saved::ensure(rings, "an outline")?;
+        state.outlines.check(&self.scene)?;
         let same_points =
             |(faces, crack): (&[Vec<Probe>; 2], &Crack)| faces.iter().all(|f| f.len() == crack.points.len());
         let faces = state.faces.len() == cracks.len() && state.faces.iter().zip(cracks.iter()).all(same_points);
         saved::ensure(faces, "the faces of a crack")?;
-        let probes = state.outlines.iter().flatten().chain(state.faces.iter().flatten().flatten());
+        let probes = state.outlines.vertices().chain(state.faces.iter().flatten().flatten());
         probes.clone().try_for_each(|probe| probe.check(fields))?;
         state.ties.check(fields, nodes, cracks.len())?;
         state.cut_at.keys().try_for_each(|id| id.check(cracks.len()))?;

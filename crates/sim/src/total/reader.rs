@@ -47,7 +47,7 @@ impl Reader<'_> {
         let solver = self.solver;
         if let Some(entries) = solver.state.cut.entries_of(particle) {
             for e in entries {
-                visit(e.field as usize, e.weight, Vector::new(e.gradient[0], e.gradient[1]));
+                visit(e.field as usize, e.weight, e.gradient);
             }
         } else {
             let stencil = stencil_of(&solver.scene, &solver.grid, solver.particles.rest[particle]);

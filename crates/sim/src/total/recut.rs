@@ -5,11 +5,11 @@
 //! mass came from, so that at the moment of the cut the strain does not change; a field that was there keeps its own.
 
 use super::Total;
-use super::cut::Entry;
 use super::refresh::Near;
 use crate::crack::Crack;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::crossing::Side;
+use crate::grid::entries::Entry;
 use crate::grid::kernel;
 use fissure_plane::{Matrix, Point, Vector, bounds};
 use fissure_scene::{CrackEnd, End};
@@ -228,21 +228,16 @@ impl Total {
                 self.state.faces[index] = self.face_probes(crack);
             }
         }
-        for ring in 0..self.state.outlines.len() {
-            for k in 0..self.state.outlines[ring].len() {
-                let probe = &self.state.outlines[ring][k];
-                if within(probe.rest) {
-                    let entries = self.probe_entries(probe.rest, probe.nudged);
-                    self.state.outlines[ring][k].entries = entries;
-                }
-            }
-        }
+        let probes = self.state.outlines.vertices().filter(|probe| within(probe.rest));
+        let renewed: Vec<_> = probes.map(|probe| self.probe_entries(probe.rest, probe.nudged)).collect();
+        let probes = self.state.outlines.vertices_mut().filter(|probe| within(probe.rest));
+        probes.zip(renewed).for_each(|(probe, entries)| probe.entries = entries);
         for &id in changed {
             if cracks.end(id) == CrackEnd::Mouth {
                 let point = cracks.position(id);
                 let there =
                     |p: &super::cut::Probe| (p.rest - point).norm() < 1e-12 * self.grid.cell_size && p.nudged != p.rest;
-                if !self.state.outlines.iter().flatten().any(there) {
+                if !self.state.outlines.vertices().any(there) {
                     self.open_mouth(cracks, id);
                 }
             }

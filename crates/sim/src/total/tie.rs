@@ -20,7 +20,7 @@
 use super::refresh::Near;
 use super::{FieldVectors, Total};
 use crate::crack::cracks::{Cracks, TipId};
-use crate::crack::division::{CrossedSet, WINDOW, facing};
+use crate::crack::division::WINDOW;
 use crate::grid::kernel;
 use crate::material::elastic::Elastic;
 use crate::saved::{self, Fits};
@@ -287,40 +287,34 @@ impl Total {
         for row in middle_row - reach..=middle_row + reach {
             for column in middle_column - reach..=middle_column + reach {
                 let Some(node) = self.grid.node([column, row]) else { continue };
-                let further = self.state.fields.of(node);
                 let place = self.grid.position(node);
                 let arm = (place - tip) / h;
                 let ahead = arm.dot(&direction);
                 let is_tied = ahead > BEGINS - LENGTH && ahead <= split_ahead(self.scene.growth.increment);
-                if further.is_empty() || !is_tied || arm.perp(&direction).abs() > WINDOW {
+                if self.state.fields.of(node).is_empty() || !is_tied || arm.perp(&direction).abs() > WINDOW {
                     continue;
                 }
-                let own: (CrossedSet, u32) = (Vec::new(), node as u32);
-                let all: Vec<_> = std::iter::once(&own)
-                    .chain(further)
-                    .filter(|f| self.state.mass[f.1 as usize] > 0.0)
-                    .map(|f| (&f.0, f.1, self.field_stiffness(f.1, place)))
-                    .collect();
-                for (k, (first_set, first, s1)) in all.iter().enumerate() {
-                    for (second_set, second, s2) in &all[k + 1..] {
-                        if facing(first_set, second_set).is_none_or(|(crack, _)| crack as usize != id.crack) {
-                            continue;
-                        }
-                        let mut tie = Tie {
-                            first: *first,
-                            second: *second,
-                            node: node as u32,
-                            place,
-                            scale: s1 * s2 / s1.hypot(*s2),
-                            rest: Vector::zeros(),
-                            stiffness: 0.0,
-                            inertia: 0.0,
-                            drag: 0.0,
-                            dragged: 0.0,
-                        };
-                        tie.set(ahead, measures);
-                        ties.push(tie);
-                    }
+                let fields = self.fields_with_mass(node);
+                let stiffness: Vec<f64> = fields.iter().map(|&field| self.field_stiffness(field, place)).collect();
+                let stiffness_of =
+                    |field: u32| fields.iter().zip(&stiffness).find(|f| *f.0 == field).map_or(0.0, |f| *f.1);
+                for facing in self.state.fields.facing_pairs(&fields).filter(|facing| facing.crack as usize == id.crack)
+                {
+                    let (s1, s2) = (stiffness_of(facing.first), stiffness_of(facing.second));
+                    let mut tie = Tie {
+                        first: facing.first,
+                        second: facing.second,
+                        node: node as u32,
+                        place,
+                        scale: s1 * s2 / s1.hypot(s2),
+                        rest: Vector::zeros(),
+                        stiffness: 0.0,
+                        inertia: 0.0,
+                        drag: 0.0,
+                        dragged: 0.0,
+                    };
+                    tie.set(ahead, measures);
+                    ties.push(tie);
                 }
             }
         }

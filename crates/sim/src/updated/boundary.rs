@@ -3,53 +3,27 @@
 use super::{MaterialPoint, Updated};
 use crate::SimulationError;
 use crate::boundary::collider::PlacedObstacle;
-use crate::boundary::selector::Selector;
-use fissure_scene::{LoadKind, Matrix, Point, Selection, Vector};
+use crate::boundary::loads::{ForcePlace, forces_of_load, nearest};
+use crate::boundary::supports::prescribed;
+use fissure_scene::{Load, Matrix, Point, Vector};
 
 impl Updated {
-    /// The forces of each load as forces on particles.
+    /// The forces of each load as forces on particles; those along outlines act on the nearest of the selected particles.
     pub(super) fn forces_of_loads(&self) -> Result<Vec<Vec<(u32, Vector)>>, SimulationError> {
-        let mut loads = Vec::new();
-        for (index, load) in self.scene.loads.iter().enumerate() {
-            let forces: Vec<(u32, Vector)> = match &load.kind {
-                LoadKind::Force(total) => {
-                    let selected = self.particles.select(&self.scene, &load.selection);
-                    let volume: f64 = selected.iter().map(|&p| self.particles.volume[p as usize]).sum();
-                    selected.iter().map(|&p| (p, total * (self.particles.volume[p as usize] / volume))).collect()
-                }
-                LoadKind::Traction(traction) => self.traction_forces(&load.selection, *traction),
-                LoadKind::PerPoint(values) => {
-                    let all: Vec<u32> = (0..self.particles.len() as u32).collect();
-                    values.iter().filter_map(|&(place, force)| Some((self.nearest(&all, place)?, force))).collect()
-                }
+        let of_load = |(index, load): (usize, &Load)| {
+            let layer = self.particles.select(&self.scene, &load.selection);
+            let particle = |place| match place {
+                ForcePlace::Particle(p) => Some(p),
+                ForcePlace::Outline(place) => nearest(&self.particles, layer.iter().copied(), place),
             };
+            let forces = forces_of_load(&self.scene, &self.particles, index)?.into_iter();
+            let forces: Vec<(u32, Vector)> = forces.filter_map(|at| Some((particle(at.place)?, at.force))).collect();
             if forces.is_empty() {
                 return Err(self.particles.no_particle("load", index, &load.selection).into());
             }
-            loads.push(forces);
-        }
-        Ok(loads)
-    }
-
-    /// The particle of `among` that is nearest to `place` at rest.
-    fn nearest(&self, among: &[u32], place: Point) -> Option<u32> {
-        let distance = |&p: &u32| (self.particles.rest[p as usize] - place).norm_squared();
-        among.iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b)))
-    }
-
-    /// A traction on the parts of the rings that lie on the selected edge, by their length, each piece on the particle nearest to it.
-    fn traction_forces(&self, selection: &Selection, traction: Vector) -> Vec<(u32, Vector)> {
-        let layer = self.particles.select(&self.scene, selection);
-        let mut forces = Vec::new();
-        for [a, b] in Selector::new(&self.scene, selection).pieces(&self.scene) {
-            let pieces = ((b - a).norm() / self.particles.spacing).round().max(1.0) as usize;
-            let share = traction * ((b - a).norm() / pieces as f64);
-            for k in 0..pieces {
-                let place = a + (b - a) * ((k as f64 + 0.5) / pieces as f64);
-                forces.extend(self.nearest(&layer, place).map(|p| (p, share)));
-            }
-        }
-        forces
+            Ok(forces)
+        };
+        self.scene.loads.iter().enumerate().map(of_load).collect()
     }
 
     /// The particles that each support holds, chosen at rest.
@@ -144,17 +118,16 @@ impl Updated {
                     }
                 });
             }
-            let factor = support.curve.value(time + 0.5 * time_step);
+            let prescribed = prescribed(support, time + 0.5 * time_step);
             for &field in &touched {
                 let mass = self.nodes.mass[field];
                 if 2.0 * held_mass[field] > mass {
-                    for axis in 0..2 {
-                        let Some(speed) = support.velocity[axis] else { continue };
-                        let v = &mut self.nodes.after[axis][field];
-                        let change = speed * factor - *v;
+                    for held in prescribed.clone() {
+                        let v = &mut self.nodes.after[held.axis][field];
+                        let change = held.velocity() - *v;
                         *v += change;
                         // The force that does it moves along with the prescribed velocity.
-                        work += mass * change * speed * factor;
+                        work += mass * change * held.speed * held.factor;
                     }
                 }
                 held_mass[field] = 0.0;
@@ -173,12 +146,11 @@ impl Updated {
     pub(super) fn hold_particles(&mut self, places: &[Vec<Point>], time: f64, time_step: f64) {
         let mut work = 0.0;
         for ((support, particles), places) in self.scene.supports.iter().zip(&self.held).zip(places) {
-            let factor = support.curve.value(time + 0.5 * time_step);
+            let prescribed = prescribed(support, time + 0.5 * time_step);
             for (&p, place) in particles.iter().zip(places) {
                 let point = &mut self.state.points[p as usize];
-                for axis in 0..2 {
-                    let Some(speed) = support.velocity[axis] else { continue };
-                    let after = speed * factor;
+                for held in prescribed.clone() {
+                    let (axis, after) = (held.axis, held.velocity());
                     work += self.particles.mass[p as usize] * (after - point.velocity[axis]) * after;
                     point.velocity[axis] = after;
                     point.position[axis] = place[axis] + time_step * after;
@@ -200,7 +172,7 @@ impl Updated {
         for collider in &self.colliders {
             let placed: PlacedObstacle<'_> = collider.at(time + 0.5 * time_step);
             let own = self.grid.nodes().map(|(_, place)| place);
-            let further = self.cut.further.iter().map(|f| self.grid.place_of(f.node as usize));
+            let further = self.cut.fields.nodes_of_further().map(|node| self.grid.place_of(node));
             for (field, place) in own.chain(further).enumerate() {
                 let mass = self.nodes.mass[field];
                 if mass <= 0.0 {

@@ -10,8 +10,9 @@
 //! homogeneous deformation on either side. It is a vector of the rest configuration and is measured along the normal at rest.
 
 use super::Updated;
+use super::stencils::Cut;
 use crate::crack::crossing::Side;
-use crate::crack::division::facing;
+use crate::grid::fields::Fields;
 use crate::grid::kernel;
 use fissure_scene::{Matrix, Point, Vector};
 
@@ -30,6 +31,23 @@ pub(super) struct ContactPair {
     normal: Vector,
 }
 
+/// Sums of unit normals of crossed segments, from below to above: now and at rest.
+type Normals = [Vector; 2];
+
+/// Unit normal of a segment of a polyline, to its left; zero for one without length.
+fn segment_normal(points: &[Point], segment: usize) -> Vector {
+    let along = points[segment + 1] - points[segment];
+    let length = along.norm();
+    if length > 0.0 { Vector::new(-along.y, along.x) / length } else { Vector::zeros() }
+}
+
+/// What `normals` holds for a field and one of the cracks that are crossed on the way to it.
+fn normals_across(fields: &Fields, normals: &[Vec<Normals>], field: usize, crack: u32) -> Normals {
+    let at = fields.crossed(field).iter().position(|c| c.0 == crack);
+    // A node's own field has none.
+    at.map_or([Vector::zeros(); 2], |at| normals[field - (fields.len() - normals.len())][at])
+}
+
 /// Sums over the particles of a field, for its mean place at rest.
 #[derive(Debug, Clone, Copy, Default)]
 struct RestPlace {
@@ -41,52 +59,69 @@ struct RestPlace {
 impl Updated {
     /// All pairs of fields that overlap across one crack.
     pub(super) fn crack_contacts(&self) -> Vec<ContactPair> {
-        if !self.settings.crack_contact || self.cut.further.is_empty() {
+        if !self.settings.crack_contact || self.cut.fields.further_count() == 0 {
             return Vec::new();
         }
         let mut pairs = Vec::new();
         let rest = self.rest_places();
-        let nodes = self.nodes.mass.len() - self.cut.further.len();
-        // Further fields of one node are linked; each node is met at its first one only.
-        let mut visited = vec![false; nodes];
-        for field in &self.cut.further {
-            let node = field.node as usize;
+        let normals = self.normals_of_fields();
+        let fields = &self.cut.fields;
+        let mut visited = vec![false; self.grid.len()];
+        for node in fields.nodes_of_further() {
+            // Each node is met at its first further field only.
             if std::mem::replace(&mut visited[node], true) {
                 continue;
             }
-            let none = (Vec::new(), Vec::new());
-            let mut all = vec![(node, &none.0, &none.1)];
-            all.extend(self.cut.further_of(node).map(|(number, f)| (number, &f.crossed, &f.normals)));
-            all.retain(|f| rest[f.0].mass > 0.0);
-            for (k, first) in all.iter().enumerate() {
-                for second in &all[k + 1..] {
-                    let Some((crack, side)) = facing(first.1, second.1) else { continue };
-                    let mut now = Vector::zeros();
-                    let mut at_rest = Vector::zeros();
-                    for (_, crossed, normals) in [first, second] {
-                        if let Some(at) = crossed.iter().position(|c| c.0 == crack) {
-                            now += normals[at].0;
-                            at_rest += normals[at].1;
-                        }
-                    }
-                    let (above, below) = if side == Side::Above { (first.0, second.0) } else { (second.0, first.0) };
-                    let mean = |field: usize| rest[field].moment / rest[field].mass;
-                    let jump = mean(below) - mean(above);
-                    let overlap = -jump.dot(&at_rest);
-                    if overlap > ROUND_OFF * self.scene.cell_size * at_rest.norm() && now != Vector::zeros() {
-                        let normal = now.normalize();
-                        pairs.push(ContactPair {
-                            above: above as u32,
-                            below: below as u32,
-                            crack,
-                            force: [0.0; 2],
-                            normal,
-                        });
-                    }
+            // Impulses act one pair after the other; the field that was made last comes first.
+            let all = std::iter::once(node as u32).chain(fields.of(node).iter().rev().copied());
+            let all: Vec<u32> = all.filter(|&field| rest[field as usize].mass > 0.0).collect();
+            for facing in fields.facing_pairs(&all) {
+                let [above, below] = facing.above_and_below();
+                let [now, at_rest] = [facing.first, facing.second]
+                    .map(|field| normals_across(fields, &normals, field as usize, facing.crack))
+                    .into_iter()
+                    .fold([Vector::zeros(); 2], |sum, n| [sum[0] + n[0], sum[1] + n[1]]);
+                let mean = |field: u32| rest[field as usize].moment / rest[field as usize].mass;
+                let overlap = -(mean(below) - mean(above)).dot(&at_rest);
+                if overlap > ROUND_OFF * self.scene.cell_size * at_rest.norm() && now != Vector::zeros() {
+                    let normal = now.normalize();
+                    pairs.push(ContactPair { above, below, crack: facing.crack, force: [0.0; 2], normal });
                 }
             }
         }
         pairs
+    }
+
+    /// Sums of the normals of the segments that pairs cross on the way to each further field, for each crack of its set.
+    fn normals_of_fields(&self) -> Vec<Vec<Normals>> {
+        let Cut { fields, stencils } = &self.cut;
+        let first = self.grid.len();
+        let mut sums: Vec<Vec<Normals>> =
+            (first..fields.len()).map(|field| vec![[Vector::zeros(); 2]; fields.crossed(field).len()]).collect();
+        for (p, entries) in stencils.iter() {
+            let place = self.state.points[p].position;
+            for further in entries.iter().filter_map(|e| (e.field as usize).checked_sub(first)) {
+                let crossed = fields.crossed(first + further);
+                let node = self.grid.position(fields.node(first + further));
+                for (sum, own) in sums[further].iter_mut().zip(self.crossed_normals(place, node, crossed)) {
+                    sum[0] += own[0];
+                    sum[1] += own[1];
+                }
+            }
+        }
+        sums
+    }
+
+    /// Sums of the normals of the segments that a pair crosses, for each crack of the set.
+    fn crossed_normals(&self, place: Point, node: Point, crossed: &[(u32, Side)]) -> Vec<Normals> {
+        let mut sums = vec![[Vector::zeros(); 2]; crossed.len()];
+        self.division.for_each_crossed(place, node, |crack, segment| {
+            let Some(at) = crossed.iter().position(|c| c.0 == crack) else { return };
+            let now = &self.state.cracks[crack as usize];
+            sums[at][0] += segment_normal(&now.position, segment);
+            sums[at][1] += segment_normal(&now.rest, segment);
+        });
+        sums
     }
 
     /// Mean place at rest of every field of the divided nodes; others stay empty.
@@ -97,8 +132,8 @@ impl Updated {
         let width = kernel::width(self.settings.kernel) as i32;
         let mut reaches = vec![false; grid.len()];
         let (mut lowest, mut highest) = (grid.rows(), 0);
-        for field in &self.cut.further {
-            let [i, j] = grid.place_of(field.node as usize);
+        for node in self.cut.fields.nodes_of_further() {
+            let [i, j] = grid.place_of(node);
             for b in 0..width {
                 for a in 0..width {
                     // Without such a node there is no such stencil.
@@ -127,7 +162,7 @@ impl Updated {
             let inverse = f.try_inverse().unwrap_or_else(Matrix::identity);
             let m = self.particles.mass[p];
             self.for_each_entry(p, |field, w| {
-                let node_place = grid.position(self.cut.node(field));
+                let node_place = grid.position(self.cut.fields.node(field));
                 let seen = self.particles.rest[p] - node_place + inverse * (node_place - point.position);
                 places[field].mass += m * w;
                 places[field].moment += seen * (m * w);
@@ -167,6 +202,6 @@ impl Updated {
     /// The forces of the last step between the faces of a crack: place of the node [m] and force on the face above [N/m].
     pub(super) fn face_forces(&self, crack: usize) -> impl Iterator<Item = (Point, Vector)> {
         let pressed = self.contacts.iter().filter(move |p| p.crack as usize == crack && p.force != [0.0; 2]);
-        pressed.map(move |p| (self.grid.position(self.cut.node(p.above as usize)), Vector::from(p.force)))
+        pressed.map(move |p| (self.grid.position(self.cut.fields.node(p.above as usize)), Vector::from(p.force)))
     }
 }

@@ -4,6 +4,7 @@ use super::Updated;
 use crate::crack::Crack;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::crossing::Side;
+use crate::faces::outlines::{Outlines, Vertex};
 use crate::saved::{self, Fits};
 use crate::threads::prelude::*;
 use fissure_scene::{CrackEnd, CrackFrame, End, Matrix, OutlineFrame, Point, Vector};
@@ -71,7 +72,21 @@ pub(super) struct Tracer {
     pub(super) face: Option<(TipId, usize)>,
 }
 
+impl Vertex for Tracer {
+    fn rest(&self) -> Point {
+        self.rest
+    }
+
+    fn is_at_mouth(&self) -> bool {
+        self.face.is_some()
+    }
+}
+
 impl Tracer {
+    fn at_rest(rest: Point) -> Self {
+        Self { rest, position: rest, velocity: Vector::zeros(), face: None }
+    }
+
     /// Checks a tracer that was read against so many `cracks`.
     ///
     /// # Errors
@@ -161,7 +176,7 @@ impl Updated {
                     continue;
                 }
                 for share in self.division.pair(side, node_place) {
-                    if let Some(field) = self.cut.find(node, &share.crossed) {
+                    if let Some(field) = self.cut.fields.find(node, &share.crossed) {
                         add(field, w * share.fraction);
                     }
                 }
@@ -182,7 +197,7 @@ impl Updated {
                 let node_place = self.grid.place([stencil.first[0] + a as i32, stencil.first[1] + b as i32]);
                 let mut mass = self.nodes.mass[node];
                 let mut momentum = self.nodes.velocity(node) * mass;
-                for (field, _) in self.cut.further_of(node) {
+                for field in self.cut.fields.of(node).iter().rev().map(|&field| field as usize) {
                     mass += self.nodes.mass[field];
                     momentum += self.nodes.velocity(field) * self.nodes.mass[field];
                 }
@@ -245,36 +260,24 @@ impl Updated {
 
     /// Moves the vertices of outlines with the material they belong to.
     pub(super) fn move_outlines(&mut self, time_step: f64) {
-        let mut outlines = std::mem::take(&mut self.state.outlines);
-        for tracers in &mut outlines {
-            tracers.par_iter_mut().with_min_len(256).filter(|t| t.face.is_none()).for_each(|t| {
-                // Out of all material a vertex goes on as it went.
-                if let Some(v) = self.velocity_at(t.position, t.position) {
-                    t.velocity = v;
-                }
+        let outlines = &self.state.outlines;
+        // The ends of crack faces move with these; out of all material a vertex goes on as it went.
+        let velocity = |t: &Tracer| {
+            if t.face.is_some() { None } else { Some(self.velocity_at(t.position, t.position).unwrap_or(t.velocity)) }
+        };
+        let velocities: Vec<Vec<Option<Vector>>> =
+            outlines.rings().map(|ring| ring.par_iter().with_min_len(256).map(velocity).collect()).collect();
+        for (t, velocity) in self.state.outlines.vertices_mut().zip(velocities.into_iter().flatten()) {
+            if let Some(velocity) = velocity {
+                t.velocity = velocity;
                 t.position += t.velocity * time_step;
-            });
+            }
         }
-        self.state.outlines = outlines;
     }
 
     /// Lays the outlines at rest.
     pub(super) fn lay_outlines(&mut self, cracks: &Cracks) {
-        let spacing = 0.5 * self.scene.cell_size;
-        let tracer = |rest: Point| Tracer { rest, position: rest, velocity: Vector::zeros(), face: None };
-        let mut outlines = Vec::new();
-        for body in &self.scene.bodies {
-            for ring in body.region.rings() {
-                let mut tracers = Vec::new();
-                for i in 0..ring.len() {
-                    let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
-                    let pieces = ((b - a).norm() / spacing).ceil().max(1.0) as usize;
-                    tracers.extend((0..pieces).map(|k| tracer(a + (b - a) * (k as f64 / pieces as f64))));
-                }
-                outlines.push(tracers);
-            }
-        }
-        self.state.outlines = outlines;
+        self.state.outlines = Outlines::at_rest(&self.scene, Tracer::at_rest);
         for id in cracks.ids().filter(|&id| cracks.end(id) == CrackEnd::Mouth) {
             self.open_mouth(cracks, id);
         }
@@ -282,8 +285,8 @@ impl Updated {
 
     /// Takes the place and the motion of the outlines of `frames`: vertices are known by their rest positions, those at mouths by the crack faces they end.
     pub(super) fn take_over_outlines(&mut self, frames: &[OutlineFrame]) {
-        for (tracers, frame) in self.state.outlines.iter_mut().zip(frames) {
-            for tracer in tracers {
+        for (ring, frame) in self.state.outlines.rings_mut().zip(frames) {
+            for tracer in ring {
                 if let Some((id, face)) = tracer.face {
                     (tracer.position, tracer.velocity) = self.state.cracks[id.crack].face_end(id.end, face);
                 } else if let Some(k) = frame.rest.iter().position(|&p| p == tracer.rest) {
@@ -297,33 +300,8 @@ impl Updated {
     /// Doubles the outline where a crack mouths at it: the two new vertices are the end points of the faces.
     fn open_mouth(&mut self, cracks: &Cracks, id: TipId) {
         let place = cracks.position(id);
-        let mut best: Option<(f64, usize, usize)> = None;
-        for (ring, tracers) in self.state.outlines.iter().enumerate() {
-            for k in 0..tracers.len() {
-                let (a, b) = (tracers[k].rest, tracers[(k + 1) % tracers.len()].rest);
-                let distance = fissure_plane::distance_to_segment(place, a, b);
-                if best.is_none_or(|x| distance < x.0) {
-                    best = Some((distance, ring, k));
-                }
-            }
-        }
-        let Some((_, ring, k)) = best else { return };
-        let vertex =
-            |face: usize| Tracer { rest: place, position: place, velocity: Vector::zeros(), face: Some((id, face)) };
-        // The material lies to the left of a ring. Walking along the ring, the left (above) of a crack that starts here and runs inward
-        // comes before the mouth, that of a crack that ends here after it.
-        let pair = if id.end == End::Start { [vertex(0), vertex(1)] } else { [vertex(1), vertex(0)] };
-        let tracers = &mut self.state.outlines[ring];
-        // A vertex that coincides with the mouth gives way to the pair.
-        let close = |t: &Tracer| t.face.is_none() && (t.rest - place).norm() < 1e-9 * self.scene.cell_size;
-        let next = (k + 1) % tracers.len();
-        if close(&tracers[next]) {
-            tracers.splice(next..=next, pair);
-        } else if close(&tracers[k]) {
-            tracers.splice(k..=k, pair);
-        } else {
-            tracers.splice(k + 1..k + 1, pair);
-        }
+        let face = |face| Tracer { face: Some((id, face)), ..Tracer::at_rest(place) };
+        self.state.outlines.open_mouth(place, id.end, [face(0), face(1)], self.scene.cell_size);
     }
 
     /// Takes up new crack points, new cracks and new kinds of ends. Particles keep what they carry, so momentum is untouched.
@@ -337,7 +315,7 @@ impl Updated {
             }
         }
         for &id in changed {
-            let is_open = self.state.outlines.iter().flatten().filter_map(|t| t.face).any(|(of, _)| of == id);
+            let is_open = self.state.outlines.vertices().filter_map(|t| t.face).any(|(of, _)| of == id);
             if cracks.end(id) == CrackEnd::Mouth && !is_open {
                 self.open_mouth(cracks, id);
             }

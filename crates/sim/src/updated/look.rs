@@ -173,25 +173,10 @@ impl Updated {
     }
 
     pub(super) fn frames_of_outlines(&self) -> Vec<OutlineFrame> {
-        let mut frames = Vec::new();
-        let mut rings = self.state.outlines.iter();
-        for (body, b) in self.scene.bodies.iter().enumerate() {
-            for (ring, tracers) in (0..=b.region.holes.len()).zip(rings.by_ref()) {
-                let now = tracers.iter().map(|t| match t.face {
-                    None => (t.position, t.velocity),
-                    Some((id, face)) => self.state.cracks[id.crack].face_end(id.end, face),
-                });
-                let (position, velocity) = now.unzip();
-                frames.push(OutlineFrame {
-                    body: body as u32,
-                    ring: ring as u32,
-                    rest: tracers.iter().map(|t| t.rest).collect(),
-                    position,
-                    velocity,
-                });
-            }
-        }
-        frames
+        self.state.outlines.frames(&self.scene, |tracer| match tracer.face {
+            None => (tracer.position, tracer.velocity),
+            Some((id, face)) => self.state.cracks[id.crack].face_end(id.end, face),
+        })
     }
 
     pub(super) fn frames_of_cracks(&self, cracks: &Cracks) -> Vec<CrackFrame> {

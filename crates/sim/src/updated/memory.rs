@@ -1,8 +1,9 @@
 //! What the solver holds, counted before it is there.
 
 use super::faces::Tracer;
-use super::stencils::{Entry, Raw};
+use super::stencils::Raw;
 use super::{MaterialPoint, Motion, PlasticPart, Updated};
+use crate::grid::entries::Entry;
 use crate::grid::kernel;
 use crate::memory::{Amounts, Need};
 use fissure_scene::{Kernel, Matrix, Scene, Transfer, Vector};

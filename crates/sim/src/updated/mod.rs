@@ -24,6 +24,7 @@ use crate::boundary::collider::Obstacle;
 use crate::crack::Crack;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::division::{CrackLine, Division, TipCut};
+use crate::faces::outlines::Outlines;
 use crate::grid::Grid;
 use crate::grid::kernel;
 use crate::material::elastic::Elastic;
@@ -63,7 +64,7 @@ struct State {
     /// Where the cracks are now.
     cracks: Vec<CrackNow>,
     /// The rings of the bodies, doubled at mouths.
-    outlines: Vec<Vec<Tracer>>,
+    outlines: Outlines<Tracer>,
     /// Work done by loads, gravity, supports and colliders so far [J/m].
     external_work: f64,
 }
@@ -98,9 +99,8 @@ impl State {
         let same = self.cracks.len() == cracks.len() && self.cracks.iter().zip(cracks.iter()).all(fits);
         saved::ensure(same, "the place of a crack")?;
         self.cracks.iter().try_for_each(|now| saved::finite("a crack", now.numbers()))?;
-        let rings: usize = scene.bodies.iter().map(|body| 1 + body.region.holes.len()).sum();
-        saved::ensure(self.outlines.len() == rings && self.outlines.iter().all(|ring| ring.len() >= 3), "an outline")?;
-        self.outlines.iter().flatten().try_for_each(|tracer| tracer.check(cracks.len()))?;
+        self.outlines.check(scene)?;
+        self.outlines.vertices().try_for_each(|tracer| tracer.check(cracks.len()))?;
         saved::finite("its work", [&self.external_work])
     }
 }
@@ -159,7 +159,7 @@ impl Updated {
             affine: if has_affine(scene) { vec![Matrix::zeros(); count] } else { Vec::new() },
             plastic: if is_plastic(scene) { vec![PlasticPart::NONE; count] } else { Vec::new() },
             cracks: cracks.iter().map(CrackNow::at_rest).collect(),
-            outlines: Vec::new(),
+            outlines: Outlines::default(),
             external_work: 0.0,
         };
         let mut solver = Self::around(scene, particles, state)?;

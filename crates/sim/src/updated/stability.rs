@@ -2,6 +2,7 @@
 
 use super::Updated;
 use crate::grid::kernel::axis_stencil;
+use crate::material::constitutive::principal_stretches;
 use crate::material::elastic::Elastic;
 use fissure_scene::{Kernel, Scene};
 
@@ -53,12 +54,10 @@ impl Updated {
         let speed = speed_squared.sqrt();
         for (p, point) in self.state.points.iter().enumerate() {
             let material = self.particles.material[p] as usize;
-            let g = &point.elastic_gradient;
             // The tangent of P Fᵀ grows with the square of the largest stretch.
-            let q = (1.0 + 0.5 * (g.m11 + g.m22)).hypot(0.5 * (g.m21 - g.m12));
-            let stretch = (q + (0.5 * (g.m11 - g.m22)).hypot(0.5 * (g.m21 + g.m12))).max(1.0);
+            let [stretch, _] = principal_stretches(&point.elastic_gradient);
             let hardening = self.state.plastic.get(p).map_or(1.0, |part| part.hardening.sqrt());
-            let wave = self.elastic[material].dilatational_wave_speed() * stretch * hardening;
+            let wave = self.elastic[material].dilatational_wave_speed() * stretch.max(1.0) * hardening;
             rate = rate.max((wave + speed) / (self.stable_number[material] * h));
         }
         let step = 1.0 / rate;

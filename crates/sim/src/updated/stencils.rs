@@ -4,14 +4,13 @@ use super::Updated;
 use crate::SimulationError;
 use crate::crack::cracks::Cracks;
 use crate::crack::division::CrossedSet;
+use crate::grid::entries::{Entries, Entry};
+use crate::grid::fields::Fields;
 use crate::grid::kernel::{self, Stencil};
 use crate::grid::spans::{Span, SpanRows};
 use crate::grid::{Grid, Walker};
 use crate::threads::prelude::*;
 use fissure_scene::{Kernel, Point, Vector};
-
-/// No particle, no field, no row.
-pub(super) const NONE: u32 = u32::MAX;
 
 /// Cells by which node (0, 0) lies below and to the left of all particles: more than any kernel reaches.
 const MARGIN: i64 = 4;
@@ -120,104 +119,20 @@ impl Lowest {
     }
 }
 
-/// One (particle, field) pair of a divided stencil.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Entry {
-    pub(super) field: u32,
-    /// Weight times share [–].
-    pub(super) weight: f64,
-    /// Gradient of it [1/m].
-    pub(super) gradient: Vector,
-    /// x_i − x_p [m].
-    pub(super) arm: Vector,
-}
-
-/// A field besides a node's own.
-#[derive(Debug)]
-pub(super) struct FurtherField {
-    pub(super) node: u32,
-    /// What particles cross on their way to the node.
-    pub(super) crossed: CrossedSet,
-    /// Sums of the normals of the crossed segments, from below to above, for each part of `crossed`: (current, rest).
-    pub(super) normals: Vec<(Vector, Vector)>,
-    /// Next further field of the node, as a place in the list, or `NONE`.
-    next: u32,
-}
-
-/// Particles that cracks divide, and the fields they need. All empty in a scene without a crack.
+/// Particles that cracks divide, and the fields they need. No further field and no stencil in a scene without a crack.
 #[derive(Debug, Default)]
 pub(super) struct Cut {
-    /// Row in `first` of each particle, or `NONE`.
-    row: Vec<u32>,
-    pub(super) particles: Vec<u32>,
-    first: Vec<u32>,
-    entries: Vec<Entry>,
-    /// First further field of each node, as a place in `further`, or `NONE`.
-    head: Vec<u32>,
-    pub(super) further: Vec<FurtherField>,
-    /// Number of nodes, which is the number of the first further field.
-    nodes: usize,
-}
-
-impl Cut {
-    /// Entries of a particle, if cracks divide its stencil.
-    #[inline]
-    pub(super) fn entries_of(&self, particle: usize) -> Option<&[Entry]> {
-        let row = *self.row.get(particle)?;
-        (row != NONE).then(|| &self.entries[self.first[row as usize] as usize..self.first[row as usize + 1] as usize])
-    }
-
-    /// Node of a field.
-    pub(super) fn node(&self, field: usize) -> usize {
-        if field < self.nodes { field } else { self.further[field - self.nodes].node as usize }
-    }
-
-    /// Further fields of a node: (number of the field, the field).
-    pub(super) fn further_of(&self, node: usize) -> impl Iterator<Item = (usize, &FurtherField)> {
-        let mut at = self.head.get(node).copied().unwrap_or(NONE);
-        std::iter::from_fn(move || {
-            let field = self.further.get(at as usize)?;
-            let number = self.nodes + at as usize;
-            at = field.next;
-            Some((number, field))
-        })
-    }
-
-    /// The field of a node across `crossed`, if it exists.
-    pub(super) fn find(&self, node: usize, crossed: &CrossedSet) -> Option<usize> {
-        if crossed.is_empty() {
-            return Some(node);
-        }
-        self.further_of(node).find(|(_, f)| f.crossed == *crossed).map(|(number, _)| number)
-    }
-
-    fn find_or_add(&mut self, node: usize, crossed: &CrossedSet) -> usize {
-        if let Some(field) = self.find(node, crossed) {
-            return field;
-        }
-        let at = self.further.len();
-        let normals = vec![(Vector::zeros(), Vector::zeros()); crossed.len()];
-        let next = std::mem::replace(&mut self.head[node], at as u32);
-        self.further.push(FurtherField { node: node as u32, crossed: crossed.clone(), normals, next });
-        self.nodes + at
-    }
-
-    /// Number of fields of all nodes together.
-    fn fields(&self, nodes: usize) -> usize {
-        nodes + self.further.len()
-    }
+    pub(super) fields: Fields,
+    /// Stencils of the particles that cracks divide.
+    pub(super) stencils: Entries,
 }
 
 /// One pair of a divided stencil before its field has a number.
 pub(super) struct Raw {
     node: u32,
-    /// Position of the node [m].
-    place: Point,
     crossed: CrossedSet,
     weight: f64,
     gradient: Vector,
-    /// As in [`FurtherField::normals`].
-    normals: Vec<(Vector, Vector)>,
 }
 
 impl Updated {
@@ -242,7 +157,7 @@ impl Updated {
                 return Err(self.left(time));
             }
         }
-        self.cut.nodes = self.grid.len();
+        self.cut.fields.clear(self.grid.len());
         if self.has_cracks() {
             if self.crack_cells() > self.most_crack_cells() {
                 return Err(self.torn(time));
@@ -250,7 +165,7 @@ impl Updated {
             self.division = self.division_now(cracks);
             self.divide_stencils();
         }
-        self.nodes.clear(self.cut.fields(self.grid.len()));
+        self.nodes.clear(self.cut.fields.len());
         Ok(())
     }
 
@@ -347,56 +262,32 @@ impl Updated {
 
     /// Finds the particles whose stencils cracks divide, and divides them.
     fn divide_stencils(&mut self) {
-        let mut cut = std::mem::take(&mut self.cut);
-        cut.further.clear();
-        cut.head.clear();
-        cut.head.resize(self.grid.len(), NONE);
-        cut.particles.clear();
-        cut.row.clear();
-        cut.row.resize(self.particles.len(), NONE);
         let near = NearCells::new(self);
-        for (p, point) in self.state.points.iter().enumerate() {
+        let is_divided = |(_, point): &(usize, &super::MaterialPoint)| {
             if !near.holds(point.position) {
-                continue;
+                return false;
             }
             let stencil = self.stencil(point.position);
             let low = self.grid.place(stencil.first);
             let high = self.grid.place(stencil.first.map(|first| first + stencil.width as i32 - 1));
-            if self.division.may_divide(point.position, low, high) {
-                cut.row[p] = cut.particles.len() as u32;
-                cut.particles.push(p as u32);
-            }
-        }
-        let raw = |p: &u32| self.divided(*p as usize);
-        let raws: Vec<Vec<Raw>> = if cut.particles.len() < PARALLEL_PARTICLES / 32 {
-            cut.particles.iter().map(raw).collect()
-        } else {
-            cut.particles.par_iter().map(raw).collect()
+            self.division.may_divide(point.position, low, high)
         };
-        cut.first.clear();
-        cut.entries.clear();
-        for (&p, raws) in cut.particles.clone().iter().zip(&raws) {
-            cut.first.push(cut.entries.len() as u32);
-            let place = self.state.points[p as usize].position;
-            for raw in raws {
-                let field = cut.find_or_add(raw.node as usize, &raw.crossed);
-                if !raw.normals.is_empty() {
-                    let sums = &mut cut.further[field - cut.nodes].normals;
-                    for (sum, normal) in sums.iter_mut().zip(&raw.normals) {
-                        sum.0 += normal.0;
-                        sum.1 += normal.1;
-                    }
-                }
-                cut.entries.push(Entry {
-                    field: field as u32,
-                    weight: raw.weight,
-                    gradient: raw.gradient,
-                    arm: raw.place - place,
-                });
-            }
+        let particles: Vec<usize> = self.state.points.iter().enumerate().filter(is_divided).map(|(p, _)| p).collect();
+        let divided = |&p: &usize| self.divided(p);
+        let raws: Vec<Vec<Raw>> = if particles.len() < PARALLEL_PARTICLES / 32 {
+            particles.iter().map(divided).collect()
+        } else {
+            particles.par_iter().map(divided).collect()
+        };
+        let Cut { fields, stencils } = &mut self.cut;
+        stencils.clear(self.particles.len());
+        for (p, raws) in particles.into_iter().zip(raws) {
+            let entries = raws.into_iter().map(|raw| {
+                let field = fields.find_or_add(raw.node as usize, &raw.crossed) as u32;
+                Entry { field, weight: raw.weight, gradient: raw.gradient }
+            });
+            stencils.push(p, entries);
         }
-        cut.first.push(cut.entries.len() as u32);
-        self.cut = cut;
     }
 
     fn divided(&self, particle: usize) -> Vec<Raw> {
@@ -410,40 +301,16 @@ impl Updated {
                 let Some(node) = nodes.at(a, b) else { continue };
                 let node_place = self.grid.place([stencil.first[0] + a as i32, stencil.first[1] + b as i32]);
                 for share in self.division.pair(place, node_place) {
-                    let normals = if self.settings.crack_contact && !share.crossed.is_empty() {
-                        self.crossed_normals(place, node_place, &share.crossed)
-                    } else {
-                        Vec::new()
-                    };
                     raws.push(Raw {
                         node: node as u32,
-                        place: node_place,
                         weight: w * share.fraction,
                         gradient: g * share.fraction + share.gradient * w,
                         crossed: share.crossed,
-                        normals,
                     });
                 }
             }
         }
         raws
-    }
-
-    /// Sums of the normals of the segments that a pair crosses, now and at rest, for each crack of the set.
-    fn crossed_normals(&self, place: Point, node: Point, crossed: &CrossedSet) -> Vec<(Vector, Vector)> {
-        let mut sums = vec![(Vector::zeros(), Vector::zeros()); crossed.len()];
-        self.division.for_each_crossed(place, node, |crack, segment| {
-            let Some(at) = crossed.iter().position(|c| c.0 == crack) else { return };
-            let now = &self.state.cracks[crack as usize];
-            let normal = |points: &[Point]| {
-                let along = points[segment + 1] - points[segment];
-                let length = along.norm();
-                if length > 0.0 { Vector::new(-along.y, along.x) / length } else { Vector::zeros() }
-            };
-            sums[at].0 += normal(&now.position);
-            sums[at].1 += normal(&now.rest);
-        });
-        sums
     }
 }
 

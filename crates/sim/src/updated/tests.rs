@@ -100,7 +100,7 @@ fn weights_add_up_to_one_across_a_crack() {
             let mut run = Run::new(&scene);
             run.steps(1, 1e-4);
             let solver = &run.solver;
-            assert!(solver.cut.further.len() > 10 && solver.cut.particles.len() > 20);
+            assert!(solver.cut.fields.further_count() > 10 && solver.cut.stencils.rows() > 20);
             let (grid, particles): (f64, f64) = (solver.nodes.mass.iter().sum(), solver.particles.mass.iter().sum());
             assert!((grid / particles - 1.0).abs() < 1e-13);
             for point in &solver.state.points {

@@ -10,10 +10,12 @@ use super::stencils::{Cut, Nodes, PARALLEL_PARTICLES};
 use super::{MaterialPoint, Motion, PlasticPart, Updated};
 use crate::SimulationError;
 use crate::boundary::collider::PlacedObstacle;
+use crate::boundary::supports::prescribed;
+use crate::grid::entries::Entry;
 use crate::grid::kernel;
 use crate::grid::{BAND, Walker, pieces};
 use crate::threads::prelude::*;
-use fissure_scene::{Kernel, Matrix, Transfer, Vector};
+use fissure_scene::{Kernel, Matrix, Point, Transfer, Vector};
 use std::ops::Range;
 
 /// Particles that one task takes on the way back from the grid.
@@ -211,7 +213,7 @@ impl Updated {
         let mut walker = Walker::new(grid);
         for &p in self.particles_of_band(piece.band) {
             let p = p as usize;
-            if self.cut.entries_of(p).is_some() {
+            if self.cut.stencils.of(p).is_some() {
                 continue;
             }
             let point = &self.state.points[p];
@@ -260,15 +262,14 @@ impl Updated {
 
     /// The same for the particles that cracks divide.
     fn cut_to_grid(&self, nodes: &mut Nodes) {
-        for &p in &self.cut.particles {
-            let p = p as usize;
+        for (p, entries) in self.cut.stencils.iter() {
             let point = &self.state.points[p];
             let m = self.particles.mass[p];
             let tension = self.stress_times_volume(p, point);
             let affine = self.state.affine.get(p);
-            for e in self.cut.entries_of(p).unwrap_or_default() {
+            for e in entries {
                 let d = e.field as usize;
-                let v = affine.map_or(point.velocity, |c| point.velocity + c * e.arm);
+                let v = affine.map_or(point.velocity, |c| point.velocity + c * self.arm(e, point.position));
                 let force = tension * e.gradient;
                 nodes.mass[d] += m * e.weight;
                 for axis in 0..2 {
@@ -334,7 +335,7 @@ impl Updated {
                 let mut walker = Walker::new(&self.grid);
                 for &p in self.particles_of_band(piece.band) {
                     let p = p as usize;
-                    if self.cut.entries_of(p).is_some() {
+                    if self.cut.stencils.of(p).is_some() {
                         continue;
                     }
                     let stencil = self.stencil(self.state.points[p].position);
@@ -356,9 +357,8 @@ impl Updated {
                 all.iter_mut().for_each(to_band);
             }
         }
-        for &p in &self.cut.particles {
-            let p = p as usize;
-            for e in self.cut.entries_of(p).unwrap_or_default() {
+        for (p, entries) in self.cut.stencils.iter() {
+            for e in entries {
                 let v = velocities[p];
                 let m = self.particles.mass[p] * e.weight;
                 momentum[0][e.field as usize] += m * v.x;
@@ -387,12 +387,10 @@ impl Updated {
             obstacles.iter().fold(v, |v, o| o.resolve(v, point.position))
         });
         for (support, particles) in self.scene.supports.iter().zip(&self.held) {
-            let factor = support.curve.value(time + 0.5 * time_step);
+            let prescribed = prescribed(support, time + 0.5 * time_step);
             for &p in particles {
-                for axis in 0..2 {
-                    if let Some(speed) = support.velocity[axis] {
-                        velocities[p as usize][axis] = speed * factor;
-                    }
+                for held in prescribed.clone() {
+                    velocities[p as usize][held.axis] = held.velocity();
                 }
             }
         }
@@ -412,7 +410,7 @@ impl Updated {
 
     /// Calls `visit` with (field, weight) for every entry of the stencil of a particle.
     pub(super) fn for_each_entry(&self, particle: usize, mut visit: impl FnMut(usize, f64)) {
-        if let Some(entries) = self.cut.entries_of(particle) {
+        if let Some(entries) = self.cut.stencils.of(particle) {
             for e in entries {
                 visit(e.field as usize, e.weight);
             }
@@ -460,8 +458,8 @@ impl Updated {
         let stencil = self.stencil(point.position);
         let arm_x: [f64; W] = arms(stencil.first[0], grid.origin.x, h, point.position.x);
         let arm_y: [f64; W] = arms(stencil.first[1], grid.origin.y, h, point.position.y);
-        if let Some(entries) = cut.entries_of(particle) {
-            return self.gather_entries::<W>(entries, &stencil, wanted, [arm_x, arm_y]);
+        if let Some(entries) = cut.stencils.of(particle) {
+            return self.gather_entries::<W>(entries, point.position, &stencil, wanted, [arm_x, arm_y]);
         }
         let mut g = Gathered::default();
         let x: [f64; W] = first(&stencil.weight[0]);
@@ -497,9 +495,15 @@ impl Updated {
         g
     }
 
+    /// From a particle at `place` to the node of an entry [m].
+    fn arm(&self, entry: &Entry, place: Point) -> Vector {
+        self.grid.position(self.cut.fields.node(entry.field as usize)) - place
+    }
+
     fn gather_entries<const W: usize>(
         &self,
-        entries: &[super::stencils::Entry],
+        entries: &[Entry],
+        place: Point,
         stencil: &kernel::Stencil,
         wanted: Wanted,
         arms: [[f64; W]; 2],
@@ -525,7 +529,7 @@ impl Updated {
                 g.before += nodes.velocity_before(d) * e.weight;
             }
             if wanted.affine {
-                g.affine += v * e.arm.transpose() * e.weight;
+                g.affine += v * self.arm(e, place).transpose() * e.weight;
             }
             if wanted.smoothed {
                 g.smoothed += Vector::new(nodes.smoothed[0][d], nodes.smoothed[1][d]) * e.weight;

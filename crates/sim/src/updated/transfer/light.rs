@@ -17,29 +17,26 @@ impl Updated {
     pub(super) fn relieve_light_fields(&mut self) {
         // The bilinear kernel takes its strains from velocities that particles have, which no share can throw off.
         let smooth = self.settings.kernel != Kernel::Bilinear;
-        if self.settings.tip_division != TipDivision::PartlyCut || !smooth || self.cut.further.is_empty() {
+        if self.settings.tip_division != TipDivision::PartlyCut || !smooth || self.cut.fields.further_count() == 0 {
             return;
         }
         let mut stiffness = vec![0.0; self.nodes.mass.len()];
         let mut speed_squared = 0.0_f64;
-        for &p in &self.cut.particles {
-            let p = p as usize;
+        for (p, entries) in self.cut.stencils.iter() {
             let (mu, lambda) = self.moduli(p);
             let modulus = (lambda + 2.0 * mu) * self.particles.volume[p];
             speed_squared = speed_squared.max(modulus / self.particles.mass[p]);
-            for e in self.cut.entries_of(p).unwrap_or_default() {
+            for e in entries {
                 stiffness[e.field as usize] += modulus * e.gradient.norm_squared();
             }
         }
         let most = LARGEST_RATIO * speed_squared / (self.scene.cell_size * self.scene.cell_size);
-        let nodes = self.nodes.mass.len() - self.cut.further.len();
-        let mut visited = vec![false; nodes];
-        for field in &self.cut.further {
-            let node = field.node as usize;
+        let mut visited = vec![false; self.grid.len()];
+        for node in self.cut.fields.nodes_of_further() {
             if std::mem::replace(&mut visited[node], true) {
                 continue;
             }
-            let fields = || std::iter::once(node).chain(self.cut.further_of(node).map(|f| f.0));
+            let fields = || std::iter::once(node).chain(self.cut.fields.of(node).iter().rev().map(|&f| f as usize));
             let mass = |field: usize| self.nodes.mass[field];
             let Some(heaviest) = fields().max_by(|&a, &b| mass(a).total_cmp(&mass(b)).then(b.cmp(&a))) else {
                 continue;
