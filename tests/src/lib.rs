@@ -1,6 +1,7 @@
-//! What suites across crates share: the examples as scenes, runs, and paths.
+//! What suites across crates share: the examples as scenes, runs, paths, and the program as a process.
 
 pub mod fuzz;
+pub mod program;
 
 use fissure_scene::{Frame, LoadError, Point, Scene};
 use fissure_sim::{Simulation, SimulationError};

@@ -1,57 +1,18 @@
 //! The program as its users meet it: the real binary, real files, exit codes and messages.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+mod common;
+
+use common::{assert_same_files, files, fissure, folder_with, names, run};
+use fissure_tests::program::PLATE;
+use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// A plate with a crack, so coarse that it runs in a moment.
-const PLATE: &str = r#"
-[[body]]
-name = "plate"
-material = "pmma"
-shape = { rectangle = { min = [-10.0, -10.0], max = [10.0, 10.0] } }
-
-[[crack]]
-name = "notch"
-line = [[0.0, 10.5], [0.0, 4.0]]
-
-[[load]]
-select = { edge = "left" }
-force = [-20e6, 0.0]
-
-[[load]]
-select = { edge = "right" }
-force = [20e6, 0.0]
-
-[grid]
-particle_spacing = 1.0
-
-[frames]
-range = "1-12"
-rate = 1000.0
-
-[output]
-thickness = 2.0
-"#;
-
 /// A folder to work in, with the scene `plate.toml`.
 fn workplace() -> TempDir {
-    let folder = TempDir::new().unwrap();
-    std::fs::write(folder.path().join("plate.toml"), PLATE).unwrap();
-    folder
-}
-
-fn fissure(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_fissure"));
-    command.current_dir(folder).args(arguments).stdin(Stdio::null());
-    command
-}
-
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    fissure(folder, arguments).output().unwrap()
+    folder_with("plate.toml", PLATE)
 }
 
 /// Exit code and everything that was said.
@@ -66,35 +27,6 @@ fn expect(output: &Output, code: i32) -> String {
     assert!(!text.contains("panicked"), "{text}");
     assert_eq!(found, code, "{text}");
     text
-}
-
-/// All files below `folder`: relative path and content.
-fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    let mut open = vec![folder.to_owned()];
-    while let Some(directory) = open.pop() {
-        for entry in std::fs::read_dir(directory).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                open.push(path);
-            } else {
-                found.insert(path.strip_prefix(folder).unwrap().to_owned(), std::fs::read(&path).unwrap());
-            }
-        }
-    }
-    found
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    files(folder).into_keys().map(|path| path.to_string_lossy().into_owned()).collect()
-}
-
-#[track_caller]
-fn assert_same_files(a: &Path, b: &Path) {
-    assert_eq!(names(a), names(b));
-    for ((name, left), (_, right)) in files(a).into_iter().zip(files(b)) {
-        assert!(left == right, "{} differs", name.display());
-    }
 }
 
 // What is asked for is there.

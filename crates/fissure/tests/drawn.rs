@@ -1,9 +1,10 @@
 //! Drawings that run without a scene file: the real binary, real files.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod common;
+
+use common::{folder_with, said};
 use fissure_scene::{LoadKind, Take};
-use std::path::Path;
-use std::process::{Command, Output};
 use tempfile::TempDir;
 
 /// A plate with a crack from its left side: a layer by its label, an id in another case, a guide with a number.
@@ -20,19 +21,7 @@ const PLATE: &str =
 const QUICK: [&str; 4] = ["--set", "grid.particle_spacing=0.008", "--set", "frames.range=1-3"];
 
 fn folder(drawing: &str) -> TempDir {
-    let folder = TempDir::new().unwrap();
-    std::fs::write(folder.path().join("plate.svg"), drawing).unwrap();
-    folder
-}
-
-fn fissure(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_fissure")).current_dir(folder).args(arguments).output().unwrap()
-}
-
-/// Exit code and messages.
-fn said(folder: &Path, arguments: &[&str]) -> (i32, String) {
-    let output = fissure(folder, arguments);
-    (output.status.code().unwrap(), String::from_utf8(output.stderr).unwrap())
+    folder_with("plate.svg", drawing)
 }
 
 fn run<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
@@ -47,7 +36,7 @@ fn run<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
 #[test]
 fn a_drawing_runs_and_its_scene_gives_the_same_take() {
     let folder = folder(PLATE);
-    let (exit, told) = said(folder.path(), &run(&QUICK));
+    let (exit, _, told) = said(folder.path(), &run(&QUICK));
     assert_eq!(exit, 0, "{told}");
     let text = std::fs::read_to_string(folder.path().join("out/plate/scene.toml")).unwrap();
     assert!(told.contains(&text), "{told}");
@@ -71,7 +60,7 @@ fn a_drawing_runs_and_its_scene_gives_the_same_take() {
     assert!(forces[0] == -forces[1] && forces[0].y > 0.0 && forces[0].x == 0.0, "{text}");
     // The same once more from the scene, into another folder.
     let scene = [&["run", "out/plate/scene.toml", "--output", "again"], &QUICK[..]].concat();
-    let (exit, told) = said(folder.path(), &scene);
+    let (exit, _, told) = said(folder.path(), &scene);
     assert_eq!(exit, 0, "{told}");
     let meshes = |root: &str| {
         let files = std::fs::read_dir(folder.path().join(root)).unwrap().map(|entry| entry.unwrap().path());
@@ -96,14 +85,14 @@ fn an_edited_scene_is_kept() {
     assert_eq!(sim(&[]).0, 0);
     let made = std::fs::read_to_string(&path).unwrap();
     std::fs::write(folder.path().join("plate.svg"), PLATE.replace("L50 62", "L70 62")).unwrap();
-    let (exit, told) = sim(&["--overwrite"]);
+    let (exit, _, told) = sim(&["--overwrite"]);
     assert_eq!(exit, 0, "{told}");
     let followed = std::fs::read_to_string(&path).unwrap();
     assert_ne!(made, followed);
     for edited in [followed.replace("glass", "pmma"), String::new(), "# mine".to_owned()] {
         std::fs::write(&path, &edited).unwrap();
         for more in [&[][..], &["--overwrite"]] {
-            let (exit, told) = sim(more);
+            let (exit, _, told) = sim(more);
             assert_eq!(exit, 2, "{told}");
             assert!(told.contains("was changed") && told.contains("fissure run out/plate/scene.toml --set"), "{told}");
             assert_eq!(std::fs::read_to_string(&path).unwrap(), edited);
@@ -111,7 +100,7 @@ fn an_edited_scene_is_kept() {
     }
     // Edited, it simulates anew: another material is another take.
     std::fs::write(&path, followed.replace("glass", "pmma")).unwrap();
-    let (exit, told) = said(folder.path(), &[&["sim", "out/plate/scene.toml", "--overwrite"], &QUICK[..]].concat());
+    let (exit, _, told) = said(folder.path(), &[&["sim", "out/plate/scene.toml", "--overwrite"], &QUICK[..]].concat());
     assert_eq!(exit, 0, "{told}");
     let take = Take::open(&folder.path().join("out/plate/plate.take")).unwrap();
     assert_eq!(take.scene().materials[take.scene().bodies[0].material].name, "pmma");
@@ -122,7 +111,7 @@ fn an_edited_scene_is_kept() {
 fn an_icon_is_a_body_with_a_notch() {
     let star = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 16 16'><path d='M8 1 10 6 15 6.5 11 10 12 15 8 12.3 4 15 5 10 1 6.5 6 6Z'/></svg>";
     let folder = folder(star);
-    let (exit, told) = said(folder.path(), &["check", "plate.svg", "--material", "pmma", "--width", "0.1"]);
+    let (exit, _, told) = said(folder.path(), &["check", "plate.svg", "--material", "pmma", "--width", "0.1"]);
     assert_eq!(exit, 0, "{told}");
     assert!(told.contains("this notch starts one") && told.contains("svg = \"*\""), "{told}");
     assert!(!folder.path().join("out").exists());
@@ -135,7 +124,7 @@ fn each_cracked_body_is_pulled() {
         <rect id='body 1' x='10' y='10' width='120' height='140'/><circle id='Body_2' cx='220' cy='80' r='65'/>
         <g id='Cracks'><path id='left' d='M8 80H45'/><path id='right' d='M220 10V50'/></g><rect id='other' width='3' height='3'/></svg>";
     let folder = folder(two);
-    let (exit, told) = said(folder.path(), &["check", "plate.svg", "--material", "glass"]);
+    let (exit, _, told) = said(folder.path(), &["check", "plate.svg", "--material", "glass"]);
     assert_eq!(exit, 0, "{told}");
     for (words, count) in
         [("[[body]]", 2), ("[[crack]]", 2), ("[[load]]", 4), ("not used: `other`", 1), ("nothing loads", 0)]
@@ -169,14 +158,14 @@ fn drawings_that_do_not_say_enough_are_told() {
         (PLATE, &["--material", "glass", "--width", "0"], 2, &["--width"]),
     ] {
         let folder = folder(drawing);
-        let (code, told) = said(folder.path(), &[&["run", "plate.svg"], arguments].concat());
+        let (code, _, told) = said(folder.path(), &[&["run", "plate.svg"], arguments].concat());
         assert_eq!(code, exit, "{told}");
         words.iter().for_each(|word| assert!(told.contains(word), "{word}: {told}"));
         assert!(!folder.path().join("out").exists());
     }
     let folder = folder(PLATE);
     std::fs::write(folder.path().join("scene.toml"), "").unwrap();
-    let (code, told) = said(folder.path(), &["run", "scene.toml", "--material", "glass"]);
+    let (code, _, told) = said(folder.path(), &["run", "scene.toml", "--material", "glass"]);
     assert!(code == 2 && told.contains("`--material` is for drawings"), "{told}");
     assert_eq!(said(folder.path(), &["run", "missing.svg", "--material", "glass"]).0, 3);
 }

@@ -1,64 +1,35 @@
 //! What the program says before it runs: warnings, and what `--strict` makes of them.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use std::process::{Command, Output};
+mod common;
+
+use common::folder_with;
+use fissure_tests::program::PLATE;
 use tempfile::TempDir;
-
-/// A plate whose crack is 6 m long, pulled hard; with a spacing of 1 m the crack is 3 cells long.
-const PLATE: &str = r#"
-[[body]]
-name = "plate"
-material = "pmma"
-shape = { rectangle = { min = [-20.0, -20.0], max = [20.0, 10.0] } }
-
-[[crack]]
-name = "notch"
-line = [[0.0, 10.5], [0.0, 4.0]]
-
-[[load]]
-select = { edge = "left" }
-force = [-20e6, 0.0]
-
-[[load]]
-select = { edge = "right" }
-force = [20e6, 0.0]
-
-[grid]
-particle_spacing = 1.0
-
-[frames]
-range = "1-3"
-rate = 1000.0
-"#;
 
 /// What `fissure COMMAND scene.toml ARGUMENTS` says of a scene: exit code, standard output, standard error.
 fn said(scene: &str, command: &str, arguments: &[&str]) -> (i32, String, String) {
-    let folder = TempDir::new().unwrap();
-    std::fs::write(folder.path().join("scene.toml"), scene).unwrap();
-    let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_fissure"))
-        .current_dir(folder.path())
-        .args([command, "scene.toml"])
-        .args(arguments)
-        .output()
-        .unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    (status.code().unwrap(), text(stdout), text(stderr))
+    let folder = folder_with("scene.toml", scene);
+    common::said(folder.path(), &[&[command, "scene.toml"], arguments].concat())
 }
 
 #[test]
 fn a_warning_shows_its_line_and_only_strict_makes_it_count() {
+    // The crack is 6 m long and a cell 2 m; all else is far away.
+    let wide = PLATE.replace("min = [-10.0, -10.0], max = [10.0, 10.0]", "min = [-20.0, -20.0], max = [20.0, 10.0]");
+    let plate = wide.replace("1-12", "1-3");
     for command in ["check", "run", "sim"] {
-        let (exit, _, told) = said(PLATE, command, &[]);
+        let (exit, _, told) = said(&plate, command, &[]);
         assert_eq!(exit, 0, "{told}");
         for words in ["3.0 cells long", "scene.toml:9:1", "grid.particle_spacing"] {
             assert_eq!(told.matches(words).count(), 1, "{command}: {words}\n{told}");
         }
-        assert_eq!(said(PLATE, command, &["--strict"]).0, 2);
+        assert_eq!(said(&plate, command, &["--strict"]).0, 2);
         let fine = ["--strict", "--set", "grid.particle_spacing=0.25", "--set", "frames.range=1-2"];
-        let (exit, _, told) = said(PLATE, command, &fine);
+        let (exit, _, told) = said(&plate, command, &fine);
         assert!(exit == 0 && !told.contains('⚠'), "{told}");
     }
-    let (exit, _, told) = said(PLATE, "check", &["--log", "json", "--strict"]);
+    let (exit, _, told) = said(&plate, "check", &["--log", "json", "--strict"]);
     let lines: Vec<serde_json::Value> = told.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     assert_eq!((exit, lines.len()), (2, 2), "{told}");
     assert_eq!(lines[0]["event"], "warning");
@@ -190,20 +161,16 @@ fn an_estimate_is_the_same_every_time() {
 #[test]
 fn a_folder_stands_for_the_scene_or_the_take_in_it() {
     let folder = TempDir::new().unwrap();
-    let fissure = |arguments: &[&str]| {
-        let output =
-            Command::new(env!("CARGO_BIN_EXE_fissure")).current_dir(folder.path()).args(arguments).output().unwrap();
-        (output.status.code().unwrap(), String::from_utf8(output.stderr).unwrap())
-    };
+    let fissure = |arguments: &[&str]| common::said(folder.path(), arguments);
     std::fs::create_dir(folder.path().join("mine")).unwrap();
     assert_eq!(fissure(&["run", "mine"]).0, 3, "there is none");
     std::fs::write(folder.path().join("mine/scene.toml"), pulled("20e6")).unwrap();
-    let (exit, told) = fissure(&["run", "mine", "--frames", "1-2"]);
+    let (exit, _, told) = fissure(&["run", "mine", "--frames", "1-2"]);
     assert_eq!(exit, 0, "{told}");
     let mesh = folder.path().join("out/mine/mine.0002.glb");
     let bytes = std::fs::read(&mesh).unwrap();
     std::fs::remove_file(&mesh).unwrap();
-    let (exit, told) = fissure(&["post", "out/mine"]);
+    let (exit, _, told) = fissure(&["post", "out/mine"]);
     assert_eq!(exit, 0, "{told}");
     assert!(std::fs::read(&mesh).unwrap() == bytes);
     // A file that is no TOML can be read; it is the scene that is wrong.

@@ -1,9 +1,11 @@
 //! Memory: what is told is what is taken, and what does not fit is refused before it begins.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod common;
+
+use common::{fissure, folder_with, run};
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
-use tempfile::TempDir;
 
 /// A plate of 1 m × 1 m that flies, in three frames.
 fn plate(formulation: &str, spacing: f64, more: &str) -> String {
@@ -28,26 +30,14 @@ rate = 1e5
     )
 }
 
-fn folder_with(scene: &str) -> TempDir {
-    let folder = TempDir::new().unwrap();
-    std::fs::write(folder.path().join("scene.toml"), scene).unwrap();
-    folder
-}
-
-fn fissure(folder: &TempDir) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_fissure"));
-    command.current_dir(folder.path());
-    command
-}
-
 /// Truth: no machine has the memory of a hundred million particles here; the answer comes before anything is laid or
 /// written.
 #[test]
 fn a_run_that_does_not_fit_is_refused_at_once() {
-    let folder = folder_with(&plate("total", 4e-5, ""));
+    let folder = folder_with("scene.toml", &plate("total", 4e-5, ""));
     for command in ["check", "run"] {
         let start = Instant::now();
-        let Output { status, stderr, .. } = fissure(&folder).args([command, "scene.toml"]).output().unwrap();
+        let Output { status, stderr, .. } = run(folder.path(), &[command, "scene.toml"]);
         let said = String::from_utf8(stderr).unwrap();
         assert_eq!(status.code(), Some(2), "{said}");
         assert!(said.contains("625000000 particles need about") && said.contains("m fits"), "{said}");
@@ -60,7 +50,7 @@ fn a_run_that_does_not_fit_is_refused_at_once() {
 #[cfg(unix)]
 #[test]
 fn a_limit_of_the_shell_is_kept() {
-    let folder = folder_with(&plate("total", 1e-3, ""));
+    let folder = folder_with("scene.toml", &plate("total", 1e-3, ""));
     let line = format!("ulimit -v 400000; exec '{}' run scene.toml", env!("CARGO_BIN_EXE_fissure"));
     let Output { status, stderr, .. } =
         Command::new("sh").current_dir(folder.path()).args(["-c", &line]).output().unwrap();
@@ -85,13 +75,12 @@ fn the_memory_that_is_told_is_taken() {
         ("updated", 0.005, crack),
         ("total", 0.005, collider),
     ] {
-        let folder = folder_with(&plate(formulation, spacing, more));
-        let Output { stdout, stderr, .. } =
-            fissure(&folder).args(["check", "scene.toml", "--log", "json"]).output().unwrap();
+        let folder = folder_with("scene.toml", &plate(formulation, spacing, more));
+        let Output { stdout, stderr, .. } = run(folder.path(), &["check", "scene.toml", "--log", "json"]);
         let told: serde_json::Value = serde_json::from_slice(&stdout).unwrap_or_else(|_| panic!("{stderr:?}"));
         let told = told["memory_bytes"].as_f64().unwrap() / 1024.0;
-        let run = fissure(&folder).args(["run", "scene.toml", "--threads", "2", "--quiet"]).spawn().unwrap();
-        let most = most_memory(run);
+        let process = fissure(folder.path(), &["run", "scene.toml", "--threads", "2", "--quiet"]).spawn().unwrap();
+        let most = most_memory(process);
         assert!((told / most - 1.0).abs() < 0.15, "{formulation} {spacing} {more}: told {told} kB, taken {most} kB");
     }
 }

@@ -9,6 +9,7 @@
 //! place of a full disk. Prints how each ended and fails when a byte differs or an end has the wrong code. For Unix.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "what it finds is its result")]
 
+use fissure_tests::program::{PLATE, files};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::collections::BTreeMap;
@@ -18,30 +19,6 @@ use std::process::{Child, Command, ExitCode, Stdio};
 use std::time::{Duration, Instant};
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
-
-/// A plate that cracks, in about half a second.
-const SCENE: &str = r#"
-[[body]]
-name = "plate"
-material = "pmma"
-shape = { rectangle = { min = [-10.0, -10.0], max = [10.0, 10.0] } }
-[[crack]]
-name = "notch"
-line = [[0.0, 10.5], [0.0, 4.0]]
-[[load]]
-select = { edge = "left" }
-force = [-20e6, 0.0]
-[[load]]
-select = { edge = "right" }
-force = [20e6, 0.0]
-[grid]
-particle_spacing = 0.2
-[frames]
-range = "1-16"
-rate = 1000.0
-[output]
-thickness = 2.0
-"#;
 
 /// How a process is ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -106,7 +83,9 @@ impl Bench {
         if !program.exists() {
             return Err(format!("`{}` is missing: `cargo build --release` makes it", program.display()).into());
         }
-        std::fs::write(folder.join("plate.toml"), SCENE)?;
+        // It cracks in about half a second.
+        let scene = PLATE.replace("particle_spacing = 1.0", "particle_spacing = 0.2").replace("1-12", "1-16");
+        std::fs::write(folder.join("plate.toml"), scene)?;
         let mut bench = Self { program, folder: folder.into(), whole: BTreeMap::new(), duration: Duration::ZERO };
         bench.to_end(&bench.arguments("run"))?;
         let start = Instant::now();
@@ -218,20 +197,4 @@ impl Bench {
 /// From 0 to below 1.
 fn fraction(random: &mut Pcg64) -> f64 {
     (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
-}
-
-/// All files below `folder`.
-fn files(folder: &Path) -> Outcome<BTreeMap<PathBuf, Vec<u8>>> {
-    let (mut found, mut open) = (BTreeMap::new(), vec![folder.to_owned()]);
-    while let Some(directory) = open.pop() {
-        for entry in std::fs::read_dir(directory)? {
-            let path = entry?.path();
-            if path.is_dir() {
-                open.push(path);
-            } else {
-                found.insert(path.strip_prefix(folder)?.to_owned(), std::fs::read(&path)?);
-            }
-        }
-    }
-    Ok(found)
 }
