@@ -90,6 +90,9 @@ impl SceneFault {
     }
 }
 
+/// What a check of a scene says: it holds, or the first fault.
+pub(crate) type Check = Result<(), SceneFault>;
+
 /// Something in a scene that can be simulated but will hardly give what its author wants: where it is, what it is, and
 /// what to do about it.
 #[derive(Debug, Clone, PartialEq)]
@@ -109,22 +112,6 @@ impl Warning {
     }
 }
 
-/// "; did you mean `x`?"-like help: the known name nearest to `name`, if one is near enough, and all of them if they
-/// are few.
-pub(crate) fn nearest(name: &str, known: &[impl AsRef<str>]) -> String {
-    let best = known
-        .iter()
-        .map(|k| (strsim::damerau_levenshtein(&name.to_lowercase(), &k.as_ref().to_lowercase()), k.as_ref()))
-        .min();
-    let list = || known.iter().map(|k| format!("`{}`", k.as_ref())).collect::<Vec<_>>().join(", ");
-    match best {
-        None => "there are none".into(),
-        Some((distance, k)) if distance <= 1 + k.len().min(name.len()) / 3 => format!("did you mean `{k}`?"),
-        Some(_) if known.len() <= 24 => format!("there are {}", list()),
-        Some((_, k)) => format!("there are {} others, the nearest is `{k}`", known.len()),
-    }
-}
-
 /// A point as messages show it.
 pub(crate) fn show(point: crate::Point) -> String {
     format!("({}, {})", short(point.x), short(point.y))
@@ -133,10 +120,4 @@ pub(crate) fn show(point: crate::Point) -> String {
 /// A number with at most seven digits.
 pub(crate) fn short(value: f64) -> f64 {
     format!("{value:.6e}").parse().unwrap_or(value)
-}
-
-/// A number of three digits at or just below a positive `value`: what "or less" may be said of.
-pub(crate) fn rounded_down(value: f64) -> f64 {
-    let unit = 10.0_f64.powf(value.log10().floor() - 2.0);
-    short((value / unit * (1.0 + 1e-9)).floor() * unit)
 }

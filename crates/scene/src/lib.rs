@@ -5,25 +5,36 @@
 //!
 //! [`load`] reads a scene file and its drawing, [`load_with_warnings`] also says what will hardly go well; scenes made
 //! in code call [`Scene::validate`].
+//!
+//! Reading scene files is the feature `load`, takes are the feature `take`; both are on by default. What is left without
+//! them touches no file.
 
+mod curve;
+#[cfg(feature = "load")]
 pub mod document;
 mod fault;
 mod frame;
 mod infinite;
+#[cfg(feature = "load")]
 mod load;
 mod materials;
 mod presets;
+mod range;
 mod scene;
 mod settings;
+#[cfg(feature = "hash")]
 mod simulation_hash;
+#[cfg(feature = "take")]
 mod take;
 mod toughness;
 mod validate;
 
 pub use fissure_plane::{Matrix, Point, Region, Vector};
 
+pub use curve::Curve;
 pub use fault::{Key, KeyPath, SceneFault, Warning};
 pub use frame::*;
+#[cfg(feature = "load")]
 pub use load::{
     Draft, DraftOptions, LoadError, LoadErrorKind, Loaded, Place, draft, load, load_with_warnings, schema, template,
 };
@@ -31,5 +42,6 @@ pub use materials::{material_preset, material_presets};
 pub use presets::{solver_preset, updated_kernel};
 pub use scene::*;
 pub use settings::*;
+#[cfg(feature = "take")]
 pub use take::*;
 pub use toughness::*;

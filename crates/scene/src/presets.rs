@@ -1,6 +1,6 @@
 //! What the named presets of the solver stand for.
 
-use crate::scene::Curve;
+use crate::curve::Curve;
 use crate::settings::*;
 
 /// The settings a solver preset stands for.

@@ -1,5 +1,6 @@
 //! A scene, complete and validated: everything in SI units, every reference resolved.
 
+use crate::curve::Curve;
 use crate::frame::{End, Pose};
 use crate::settings::{FrameSettings, GrowthSettings, OutputSettings, PlaneState, SolverSettings};
 use crate::toughness::ToughnessPatch;
@@ -43,6 +44,14 @@ pub struct Scene {
     pub frames: FrameSettings,
     /// Output.
     pub output: OutputSettings,
+}
+
+impl Scene {
+    /// Factor on the fracture toughness of body number `body` at a place of it at rest [m]: the product of all patches
+    /// there.
+    pub fn toughness_factor(&self, body: usize, place: Point) -> f64 {
+        self.toughness.iter().map(|patch| patch.factor(body, place)).product()
+    }
 }
 
 /// Material constants.
@@ -204,7 +213,8 @@ pub struct OutlineStretch {
 }
 
 /// A side of a bounding box.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "load", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum BoxSide {
     /// Lowest x.
@@ -215,30 +225,6 @@ pub enum BoxSide {
     Bottom,
     /// Highest y.
     Top,
-}
-
-/// A piecewise linear factor over time; before the first and after the last point constant. Empty: always 1.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Curve {
-    /// (time [s], factor), times rising.
-    pub points: Vec<(f64, f64)>,
-}
-
-impl Curve {
-    /// Factor at `time`.
-    pub fn value(&self, time: f64) -> f64 {
-        let p = &self.points;
-        let (Some(first), Some(last)) = (p.first(), p.last()) else { return 1.0 };
-        if time <= first.0 {
-            return first.1;
-        }
-        if time >= last.0 {
-            return last.1;
-        }
-        let next = p.partition_point(|q| q.0 <= time);
-        let ((t0, f0), (t1, f1)) = (p[next - 1], p[next]);
-        f0 + (f1 - f0) * (time - t0) / (t1 - t0)
-    }
 }
 
 /// A load.
@@ -316,7 +302,8 @@ pub enum ColliderShape {
 }
 
 /// What happens when material touches a collider.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "load", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Contact {
     /// Pushed out, may leave; friction along the surface.

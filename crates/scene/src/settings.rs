@@ -1,11 +1,11 @@
 //! Settings that a scene file and the solver share word for word.
 
-use crate::scene::Curve;
-use schemars::JsonSchema;
+use crate::curve::Curve;
 use serde::{Deserialize, Serialize};
 
 /// How stress out of the plane is treated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "load", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum PlaneState {
     /// Thick body: no strain out of the plane.
@@ -16,7 +16,8 @@ pub enum PlaneState {
 }
 
 /// A named set of solver settings to start from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "load", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum SolverPreset {
     /// The recommended settings.
@@ -28,7 +29,8 @@ pub enum SolverPreset {
 }
 
 /// Where kernels live.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "load", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Formulation {
     /// Total where every material is elastic and strains are expected to be small, updated elsewhere.
@@ -41,7 +43,8 @@ pub enum Formulation {
 }
 
 /// Interpolation between particles and grid nodes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "load", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Kernel {
     /// Bilinear hat on the particle position.
@@ -55,13 +58,14 @@ pub enum Kernel {
 }
 
 /// How velocities go back from the grid to the particles (updated Lagrangian only).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "load", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Transfer {
     /// Grid velocity only; damps every wave.
     Pic,
     /// `flip` parts of the grid's velocity change added to the particle, the rest PIC; 1 is pure FLIP.
-    Flip(#[schemars(transform = crate::validate::UNIT.bounds())] f64),
+    Flip(#[cfg_attr(feature = "load", schemars(transform = crate::range::UNIT.bounds()))] f64),
     /// Affine PIC.
     Apic,
     /// Extended PIC of order 2.
@@ -69,7 +73,8 @@ pub enum Transfer {
 }
 
 /// How the energy release rate is measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "load", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum JMethod {
     /// Integral over a circle of 16 segments.
@@ -79,7 +84,8 @@ pub enum JMethod {
 }
 
 /// How J is split into K_I and K_II.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "load", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum ModeSplit {
     /// By the ratio of opening and sliding of the crack faces behind the tip.
@@ -89,7 +95,8 @@ pub enum ModeSplit {
 }
 
 /// How the material around a tip inside a cell is divided.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "load", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum TipDivision {
     /// By line crossing alone: the effective tip jumps from node to node.
@@ -100,7 +107,8 @@ pub enum TipDivision {
 }
 
 /// What to do when the total Lagrangian formulation leaves its range.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "load", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum OnDistortion {
     /// Stop with the particle, the time and the remedy.
@@ -196,7 +204,8 @@ impl FrameSettings {
 }
 
 /// A part of the scene that can be written as a mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "load", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Part {
     /// The body with its cracks cut out, extruded.
@@ -212,7 +221,8 @@ pub enum Part {
 }
 
 /// A mesh file format.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "load", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Format {
     /// Binary glTF 2.0.
@@ -222,7 +232,8 @@ pub enum Format {
 }
 
 /// The axis that points up in formats that do not fix it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "load", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum UpAxis {
     /// y up, the drawing in the x–y plane.

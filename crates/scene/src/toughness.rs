@@ -1,6 +1,5 @@
 //! Toughness that varies in space: factors on the fracture toughness of the material, over regions or painted.
 
-use crate::scene::Scene;
 use fissure_plane::{Point, Region, Vector};
 use serde::{Deserialize, Serialize};
 
@@ -45,7 +44,8 @@ pub struct ToughnessImage {
 }
 
 impl ToughnessPatch {
-    fn factor(&self, body: usize, place: Point) -> f64 {
+    /// Factor on the fracture toughness of body number `body` at a place of it at rest [m].
+    pub(crate) fn factor(&self, body: usize, place: Point) -> f64 {
         if self.body.is_some_and(|b| b != body) {
             return 1.0;
         }
@@ -79,14 +79,6 @@ impl ToughnessImage {
             (1.0 - u) * pixel(left) + u * pixel(right)
         };
         (1.0 - v) * row(bottom) + v * row(top)
-    }
-}
-
-impl Scene {
-    /// Factor on the fracture toughness of body number `body` at a place of it at rest [m]: the product of all patches
-    /// there.
-    pub fn toughness_factor(&self, body: usize, place: Point) -> f64 {
-        self.toughness.iter().map(|patch| patch.factor(body, place)).product()
     }
 }
 

@@ -1,7 +1,7 @@
 //! Cracks, guides and flaws of a scene file.
 
 use super::{Line, Shape};
-use crate::validate::{DEGREES, DEGREES_APART, FLAW_DENSITY, FRAME, LENGTH, SPREAD, UNIT, pairs};
+use crate::range::{DEGREES, DEGREES_APART, FLAW_DENSITY, FRAME, LENGTH, SPREAD, UNIT, pairs};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

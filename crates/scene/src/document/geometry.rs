@@ -1,6 +1,6 @@
 //! Drawings, shapes and lines of a scene file.
 
-use crate::validate::{COORDINATE, LENGTH};
+use crate::range::{COORDINATE, LENGTH};
 use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{MapAccess, SeqAccess, Visitor};

@@ -1,7 +1,7 @@
 //! Bodies, materials and toughness of a scene file.
 
 use super::{PlasticityValues, Shape, Switch};
-use crate::validate::{
+use crate::range::{
     ANGULAR_VELOCITY, COORDINATE, CRACK_SPEED, DENSITY, FRACTURE_TOUGHNESS, POISSON_RATIO, TOUGHNESS_FACTOR, VELOCITY,
     YOUNG_MODULUS,
 };

@@ -17,8 +17,8 @@ pub use motion::*;
 pub use settings::*;
 pub use switch::Switch;
 
+use crate::range::ACCELERATION;
 use crate::settings::PlaneState;
-use crate::validate::ACCELERATION;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -1,10 +1,10 @@
 //! What moves and holds the bodies of a scene file: colliders, loads, supports, velocities.
 
 use super::Shape;
-use crate::scene::{BoxSide, Contact};
-use crate::validate::{
+use crate::range::{
     ANGULAR_VELOCITY, COORDINATE, CURVE_FACTOR, DEGREES, FORCE, FRICTION, LENGTH, TIME, TRACTION, VELOCITY, pairs,
 };
+use crate::scene::{BoxSide, Contact};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

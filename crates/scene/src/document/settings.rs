@@ -1,12 +1,12 @@
 //! Resolution, solver, growth, frames and output of a scene file.
 
 use super::Switch;
-use crate::scene::Plasticity;
-use crate::settings::*;
-use crate::validate::{
+use crate::range::{
     ACUTE, AREA, BENDING, CELLS, CRITICAL_COMPRESSION, CRITICAL_STRETCH, DAMPING, FRACTION, FRAME, FRAME_RATE,
     FRICTION, HARDENING, LENGTH, RELEASE_RATIO, SPEED_FACTOR, TIME_STEP, pairs,
 };
+use crate::scene::Plasticity;
+use crate::settings::*;
 use schemars::JsonSchema;
 use serde::de::Visitor;
 use serde::{Deserialize, Deserializer, Serialize};

@@ -1,6 +1,6 @@
 //! The error of loading a scene, with all that a report needs.
 
-use super::source::SceneSource;
+use super::place::Place;
 use crate::fault::SceneFault;
 use fissure_files::read_regular;
 use std::ops::Range;
@@ -71,9 +71,8 @@ impl LoadError {
         Self { source_text: Some(text.into()), span, ..Self::file(path, message, remedy) }
     }
 
-    /// A fault of the scene, shown where its key is written: in the file, or in the override that set it.
-    pub(crate) fn fault(source: &SceneSource, fault: SceneFault) -> Self {
-        let place = source.locate(&fault.path);
+    /// A fault of the scene, whose key is written at `place`.
+    pub(crate) fn fault(place: Place, fault: SceneFault) -> Self {
         Self {
             kind: LoadErrorKind::Scene,
             path: place.path.into(),

@@ -1,7 +1,8 @@
 //! What a key of a scene file wants, in words, when it was given something else.
 
 use super::schema;
-use crate::fault::{Key, KeyPath, nearest};
+use crate::fault::{Key, KeyPath};
+use crate::load::nearest::nearest;
 use std::sync::LazyLock;
 use toml::Value;
 

@@ -6,6 +6,7 @@ mod drawing;
 mod error;
 mod explain;
 mod loaded;
+mod nearest;
 mod overrides;
 mod picture;
 mod place;
@@ -60,7 +61,7 @@ fn load_text(
 ) -> Result<Loaded, LoadError> {
     let (source, document) = SceneSource::parse(path, text, overrides)?;
     let drawing = match &document.drawing {
-        Some(drawing) => Some(LoadedDrawing::read(drawing, &locate, |fault| LoadError::fault(&source, fault))?),
+        Some(drawing) => Some(LoadedDrawing::read(drawing, &locate, |fault| source.error(fault))?),
         None => None,
     };
     let mut budget = Budget::of_a_scene();
@@ -68,8 +69,7 @@ fn load_text(
         |keys: &ToughnessKeys| keys.image.as_ref().map(|file| Picture::read(&locate(file), &mut budget)).transpose();
     let pictures = document.toughness.iter().map(picture).collect::<Result<Vec<_>, _>>()?;
     let resolver = Resolver::new(&document, drawing.as_ref(), &pictures, default_name(path));
-    let Resolution { mut scene, origin, warnings } =
-        resolver.resolve().map_err(|fault| LoadError::fault(&source, fault))?;
+    let Resolution { mut scene, origin, warnings } = resolver.resolve().map_err(|fault| source.error(fault))?;
     scene.hash = scene.simulation_hash();
     Ok(Loaded { scene, warnings, source, origin })
 }

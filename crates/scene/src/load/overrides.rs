@@ -1,6 +1,7 @@
 //! Overrides from the command line: `--set solver.preset=thesis`.
 
-use crate::fault::{Key, KeyPath, nearest};
+use crate::fault::{Key, KeyPath};
+use crate::load::nearest::nearest;
 use crate::materials::material_presets;
 use toml::{Table, Value};
 

@@ -57,7 +57,7 @@ impl SceneSource {
                     .collect(),
             );
             let (message, remedy) = explain(error.inner().message(), &mut path, &self.written());
-            LoadError::fault(self, SceneFault::new(path, message, remedy))
+            self.error(SceneFault::new(path, message, remedy))
         })
     }
 
@@ -68,6 +68,11 @@ impl SceneSource {
         // They went in without complaint before.
         self.overrides.iter().for_each(|(_, set)| drop(set.apply(&mut table)));
         toml::Value::Table(table)
+    }
+
+    /// A fault of the scene, shown where its key is written: in the file, or in the override that set it.
+    pub(crate) fn error(&self, fault: SceneFault) -> LoadError {
+        LoadError::fault(self.locate(&fault.path), fault)
     }
 
     /// Where `path` is written: file or override, its text, and the bytes meant. The deepest part that is written

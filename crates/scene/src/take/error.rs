@@ -1,6 +1,5 @@
 //! What can go wrong with a take.
 
-use super::Manifest;
 use fissure_files::FileError;
 use std::path::{Path, PathBuf};
 
@@ -20,12 +19,14 @@ pub enum TakeError {
         cause: String,
     },
     /// The take is of a version that this program does not read.
-    #[error("`{}` is a take of version {found}, this program reads version {}", path.display(), Manifest::VERSION)]
+    #[error("`{}` is a take of version {found}, this program reads version {ours}", path.display())]
     Version {
         /// The manifest.
         path: PathBuf,
         /// Its version.
         found: u64,
+        /// The version that this program reads.
+        ours: u64,
     },
     /// The manifest or the list of frames is not as it was written.
     #[error("`{}` is damaged: {cause}", path.display())]

@@ -1,7 +1,7 @@
 //! `frames.jsonl`: the frames there are, one line each. Lines are only ever added; one is added when its frame is on
 //! the disk, so that whatever is listed is there.
 
-use super::TakeError;
+use super::error::TakeError;
 use super::sealed::{LINE, sha256};
 use fissure_files::Folder;
 use serde::{Deserialize, Serialize};

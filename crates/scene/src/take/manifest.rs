@@ -1,6 +1,6 @@
 //! `manifest.json`: what a take is.
 
-use super::TakeError;
+use super::error::TakeError;
 use super::sealed::PAGE;
 use crate::scene::Scene;
 use fissure_files::Folder;
@@ -82,7 +82,7 @@ impl Manifest {
             return Err(not_a_take(format!("its {NAME} is of the format `{}`", head.format.escape_debug())));
         }
         if head.version != Self::VERSION {
-            return Err(TakeError::Version { path, found: head.version });
+            return Err(TakeError::Version { path, found: head.version, ours: Self::VERSION });
         }
         let text = std::str::from_utf8(&bytes).map_err(|error| TakeError::damaged(&path, error))?;
         if !PAGE.holds(text) {

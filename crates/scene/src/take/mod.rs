@@ -16,10 +16,12 @@
 //! Equal frames give equal bytes; nothing in a take depends on the time of day.
 
 mod error;
+mod frame_file;
 mod list;
 mod manifest;
 mod opening;
 mod read;
+mod remark;
 mod sealed;
 mod state;
 mod tables;
@@ -29,8 +31,9 @@ mod write;
 pub use error::TakeError;
 pub use list::{FileEntry, FrameEntry};
 pub use manifest::{Manifest, Provenance};
-pub use opening::{Opened, Remark, Start};
+pub use opening::{Opened, Start};
 pub use read::Take;
+pub use remark::Remark;
 pub use state::SavedState;
 pub use tensors::{frame_from_bytes, frame_to_bytes};
 pub use write::TakeWriter;

@@ -1,9 +1,9 @@
 //! Reading a take, also while it is being written.
 
 use super::list::{self, FrameEntry};
-use super::opening::Remark;
+use super::remark::Remark;
 use super::tables::TABLES;
-use super::{Manifest, TakeError, frame_from_bytes, state};
+use super::{Manifest, TakeError, frame_file, state};
 use crate::frame::Frame;
 use crate::scene::Scene;
 use fissure_files::Folder;
@@ -67,7 +67,7 @@ impl Take {
     /// When there is no such frame, or its file is missing, cut off or changed.
     pub fn frame(&self, number: i64) -> Result<Frame, TakeError> {
         match self.entries.binary_search_by_key(&number, |entry| entry.number) {
-            Ok(at) => frame(&self.folder, &self.entries[at]),
+            Ok(at) => frame_file::read(&self.folder, &self.entries[at]),
             Err(_) => {
                 let have = list::in_words(&self.entries);
                 Err(TakeError::NoFrame { path: self.folder.path().into(), number, have })
@@ -93,20 +93,4 @@ impl Take {
         }
         Ok(remarks)
     }
-}
-
-/// The frame of `entry`, held against its checksum.
-pub(super) fn frame(folder: &Folder, entry: &FrameEntry) -> Result<Frame, TakeError> {
-    // The list has been read with one file for each frame.
-    let (file, name) = (entry.files.first(), list::file_name(entry.number));
-    let path = folder.place(&name)?;
-    let bytes = folder.read(&name)?.ok_or_else(|| TakeError::damaged_frame(&path, "it is missing"))?;
-    if !file.is_some_and(|file| file.fits(&bytes)) {
-        return Err(TakeError::damaged_frame(&path, "its checksum does not fit"));
-    }
-    let frame = frame_from_bytes(&bytes).map_err(|cause| TakeError::damaged_frame(&path, cause))?;
-    if frame.number != entry.number {
-        return Err(TakeError::damaged_frame(&path, format!("it holds frame {}", frame.number)));
-    }
-    Ok(frame)
 }

@@ -1,6 +1,6 @@
 //! `state.bin`: the solver's state at a frame, whole or not at all.
 
-use super::TakeError;
+use super::error::TakeError;
 use fissure_files::Folder;
 use sha2::{Digest, Sha256};
 

@@ -2,7 +2,7 @@
 //! from these where they are torn or changed.
 
 use super::list::{FileEntry, FrameEntry};
-use super::{TakeError, read};
+use super::{TakeError, frame_file};
 use crate::frame::{End, Frame, TipState};
 use fissure_files::Folder;
 use std::fmt::Write as _;
@@ -54,7 +54,7 @@ impl Table {
             None => {
                 let mut text = self.head.to_owned();
                 for entry in entries {
-                    text += &(self.rows)(&read::frame(folder, entry)?);
+                    text += &(self.rows)(&frame_file::read(folder, entry)?);
                 }
                 folder.write(self.name, text.as_bytes())?;
                 Ok(true)

@@ -1,9 +1,11 @@
 //! Cracks and guides.
 
 use super::curve::{Clock, validate_schedule};
+use super::name::unique_name;
 use super::region::is_on;
-use super::{COORDINATE, Check, POINTS, UNIT, unique_name};
+use crate::fault::Check;
 use crate::fault::{KeyPath, SceneFault, show};
+use crate::range::{COORDINATE, POINTS, UNIT};
 use crate::scene::{Body, Crack, Scene};
 use fissure_plane::{Point, Region, find_crossing, nearest_on_segment, orientation, polyline_length, segments_touch};
 

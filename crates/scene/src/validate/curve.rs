@@ -1,8 +1,9 @@
 //! Values over time, in seconds or in frames.
 
-use super::{CURVE_FACTOR, Check, FRAME, KEYFRAMES, Range, SPEED_FACTOR, TIME, UNIT};
+use crate::curve::Curve;
+use crate::fault::Check;
 use crate::fault::{KeyPath, SceneFault, short};
-use crate::scene::Curve;
+use crate::range::{CURVE_FACTOR, FRAME, KEYFRAMES, Range, SPEED_FACTOR, TIME, UNIT};
 
 /// What the first numbers of a curve count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -10,6 +11,7 @@ pub(crate) enum Clock {
     /// Seconds.
     Seconds,
     /// Frames, as a scene file has them.
+    #[cfg_attr(not(feature = "load"), allow(dead_code, reason = "a scene has seconds"))]
     Frames,
 }
 

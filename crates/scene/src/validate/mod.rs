@@ -1,45 +1,32 @@
-//! What a scene must fulfil to be simulated. Every range is written here, once.
+//! What a scene must fulfil to be simulated.
 
-mod bounds;
-mod count;
 mod cracks;
 mod curve;
 mod motion;
 mod name;
-mod range;
 mod region;
 mod settings;
 mod toughness;
 
-pub(crate) use bounds::pairs;
-pub(crate) use count::*;
-#[cfg(test)]
+#[cfg(all(test, feature = "load"))]
 pub(crate) use cracks::leaves;
-pub(crate) use cracks::{no_tip, validate_strength};
-pub(crate) use curve::{Clock, validate_schedule, validate_speed};
-pub(crate) use range::*;
-pub(crate) use region::{overlap, validate_region};
-pub(crate) use toughness::{outside, validate_corners};
+// What is checked while it is read, where the file still says what was meant.
+#[cfg(feature = "load")]
+pub(crate) use {
+    cracks::{no_tip, validate_strength},
+    curve::{Clock, validate_schedule, validate_speed},
+    region::{overlap, validate_region},
+    toughness::{outside, validate_corners},
+};
 
-use crate::document::PolygonKeys;
-use crate::fault::{KeyPath, SceneFault, short};
+use crate::fault::{Check, KeyPath, SceneFault, short};
+use crate::range::{
+    ACCELERATION, ANGULAR_VELOCITY, COORDINATE, CRACK_SPEED, CRITICAL_COMPRESSION, CRITICAL_STRETCH, DENSITY,
+    FRACTURE_TOUGHNESS, HARDENING, ITEMS, POISSON_RATIO, Range, VELOCITY, YOUNG_MODULUS,
+};
 use crate::scene::Scene;
-use fissure_plane::Vector;
 use motion::validate_collider;
-use name::{validate_file_name, validate_word};
-
-type Check = Result<(), SceneFault>;
-
-/// That an inline polygon has corners to make rings of.
-pub(crate) fn enough_corners(path: &KeyPath, polygon: &PolygonKeys) -> Check {
-    std::iter::once(&polygon.exterior).chain(&polygon.holes).find(|ring| ring.len() < 3).map_or(Ok(()), |ring| {
-        Err(SceneFault::new(
-            path.clone(),
-            format!("a ring has {} corners", ring.len()),
-            "a ring needs at least 3 corners",
-        ))
-    })
-}
+use name::{unique_name, validate_file_name, validate_word};
 
 impl Scene {
     /// Checks that every number is finite and in its range, every index exists, and the geometry is simple, oriented
@@ -121,7 +108,11 @@ impl Scene {
                 let remedy = format!("there are {}, numbered from 0", self.materials.len());
                 return Err(SceneFault::new(path.then("material"), message, remedy));
             }
-            validate_region(&path.then("shape"), &format!("the outline of body `{}`", body.name), &body.region)?;
+            region::validate_region(
+                &path.then("shape"),
+                &format!("the outline of body `{}`", body.name),
+                &body.region,
+            )?;
             let part = |(k, inclusion)| self.validate_inclusion(&path.then("inclusions").then(k), inclusion, body);
             ITEMS.check(&path, &format!("body `{}` with its parts", body.name), body.inclusions.len())?;
             body.inclusions.iter().enumerate().try_for_each(part)?;
@@ -141,7 +132,7 @@ impl Scene {
     fn validate_overlaps(&self) -> Check {
         for (i, a) in self.bodies.iter().enumerate() {
             for b in &self.bodies[..i] {
-                let shared = overlap(&a.region, &b.region);
+                let shared = region::overlap(&a.region, &b.region);
                 if shared > 0.0 {
                     return Err(SceneFault::new(
                         KeyPath::item("body", i).then("shape"),
@@ -153,21 +144,4 @@ impl Scene {
         }
         Ok(())
     }
-}
-
-fn unique_name<'a>(path: &KeyPath, what: &str, name: &str, mut before: impl Iterator<Item = &'a str>) -> Check {
-    if name.is_empty() || before.any(|b| b == name) {
-        let message = if name.is_empty() {
-            format!("a {what} has an empty name")
-        } else {
-            format!("two of them are called {what} `{name}`")
-        };
-        return Err(SceneFault::new(path.then("name"), message, "give each its own name"));
-    }
-    validate_word(path.then("name"), what, name)
-}
-
-/// A unit vector, or the vector itself when it has no direction (which [`Scene::validate`] reports).
-pub(crate) fn unit(v: Vector) -> Vector {
-    v.try_normalize(0.0).unwrap_or(v)
 }

@@ -1,12 +1,14 @@
 //! Loads, supports, selections and colliders.
 
 use super::curve::{Clock, validate_curve};
-use super::{
-    ANGULAR_VELOCITY, COORDINATE, Check, DEGREES, FORCE, FRICTION, INTERVAL, ITEMS, KEYFRAMES, LENGTH, TIME, TRACTION,
-    VELOCITY, validate_region,
-};
+use super::region::validate_region;
+use crate::fault::Check;
 use crate::fault::{KeyPath, SceneFault};
 use crate::frame::Pose;
+use crate::range::{
+    ANGULAR_VELOCITY, COORDINATE, DEGREES, FORCE, FRICTION, INTERVAL, ITEMS, KEYFRAMES, LENGTH, TIME, TRACTION,
+    VELOCITY,
+};
 use crate::scene::*;
 use fissure_plane::Region;
 

@@ -1,7 +1,6 @@
 //! Names: those that become file names stay in their folder on every system, and none can mean something to a terminal.
 
-use super::Check;
-use crate::fault::{KeyPath, SceneFault};
+use crate::fault::{Check, KeyPath, SceneFault};
 
 /// Most bytes of a name: with frame number, part and extension a file name stays far below the 255 of common file
 /// systems.
@@ -57,4 +56,22 @@ pub(super) fn validate_word(path: KeyPath, what: &str, name: &str) -> Check {
     let shown: String = name.chars().take(MOST_BYTES).collect();
     let message = format!("the name `{}` of a {what} {why}", shown.escape_debug());
     Err(SceneFault::new(path, message, "choose a short name of letters, digits and the like"))
+}
+
+/// That a name can be shown and is no other's. `before`: the names of its like so far.
+pub(super) fn unique_name<'a>(
+    path: &KeyPath,
+    what: &str,
+    name: &str,
+    mut before: impl Iterator<Item = &'a str>,
+) -> Check {
+    if name.is_empty() || before.any(|b| b == name) {
+        let message = if name.is_empty() {
+            format!("a {what} has an empty name")
+        } else {
+            format!("two of them are called {what} `{name}`")
+        };
+        return Err(SceneFault::new(path.then("name"), message, "give each its own name"));
+    }
+    validate_word(path.then("name"), what, name)
 }

@@ -1,7 +1,8 @@
 //! Outlines of bodies, colliders and selections.
 
-use super::{COORDINATE, CORNERS, Check};
+use crate::fault::Check;
 use crate::fault::{KeyPath, SceneFault, show};
+use crate::range::{COORDINATE, CORNERS};
 use fissure_plane::{Point, Region, bounds, find_crossing, orientation, signed_area};
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay_rule::OverlayRule;

@@ -1,11 +1,12 @@
 //! Resolution, solver, growth, frames and output.
 
 use super::curve::{Clock, validate_speed};
-use super::{
-    ACUTE, AREA, BENDING, CELLS, Check, DAMPING, FRACTION, FRAME_RATE, FRAMES, FRICTION, LENGTH, PARTICLE_FRAMES,
-    PARTICLES, RELEASE_RATIO, TIME, TIME_STEP, UNIT,
-};
+use crate::fault::Check;
 use crate::fault::{KeyPath, SceneFault, short};
+use crate::range::{
+    ACUTE, AREA, BENDING, CELLS, DAMPING, FRACTION, FRAME_RATE, FRAMES, FRICTION, LENGTH, PARTICLE_FRAMES, PARTICLES,
+    RELEASE_RATIO, TIME, TIME_STEP, UNIT,
+};
 use crate::scene::{Body, Scene};
 use crate::settings::Branching;
 

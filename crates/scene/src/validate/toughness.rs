@@ -1,8 +1,10 @@
 //! Parts of other materials and patches of toughness.
 
 use super::region::overlap;
-use super::{COORDINATE, Check, TOUGHNESS_FACTOR, validate_region};
+use super::region::validate_region;
+use crate::fault::Check;
 use crate::fault::{KeyPath, SceneFault};
+use crate::range::{COORDINATE, TOUGHNESS_FACTOR};
 use crate::scene::{Body, Inclusion, Scene};
 use crate::toughness::{ToughnessImage, ToughnessKind, ToughnessPatch};
 use fissure_plane::Point;

@@ -12,7 +12,7 @@ use super::error::{DRAWING, LoadError, LoadErrorKind};
 use super::loaded::Loaded;
 use super::seating::Complaint;
 use crate::document::{Drawing, Origin};
-use crate::fault::nearest;
+use crate::load::nearest::nearest;
 use crate::materials::{material_preset, material_presets};
 use layout::Layout;
 use sha2::{Digest, Sha256};

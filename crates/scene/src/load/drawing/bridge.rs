@@ -3,7 +3,7 @@
 //! Two shapes that abut are each flattened and rounded by themselves, which leaves hair-thin gaps between them. Where
 //! an edge of one shape faces an edge of another closer than `reach`, the strip between them is added.
 
-use super::area::GridPoint;
+use super::grid::GridPoint;
 use super::limits::MOST_STRIPS;
 
 /// A strip counts from so many times its reach in length on: edges that meet in a corner only are no shared edge.

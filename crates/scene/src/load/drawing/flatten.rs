@@ -1,6 +1,6 @@
 //! Curves as polylines, and how much work an element may make.
 
-use super::area::GridPoint;
+use super::grid::GridPoint;
 use super::limits::{MOST_CROSSINGS, MOST_PAIRS, MOST_POINTS};
 use crate::load::seating::Complaint;
 use fissure_plane::Point;

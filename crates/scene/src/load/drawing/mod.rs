@@ -14,6 +14,7 @@ mod effects;
 mod entities;
 mod flatten;
 mod fonts;
+mod grid;
 mod limits;
 mod names;
 mod piece;

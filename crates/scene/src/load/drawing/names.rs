@@ -1,6 +1,6 @@
 //! Which element a name means: by its id, then by its label.
 
-use crate::fault::nearest;
+use crate::load::nearest::nearest;
 use crate::load::seating::Complaint;
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;

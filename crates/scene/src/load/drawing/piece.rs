@@ -1,8 +1,9 @@
 //! The paths of an element, with all that decides which area they cover.
 
 use super::ROUNDING;
-use super::area::{Area, FillRule, Grid, GridPoint};
+use super::area::{Area, FillRule};
 use super::flatten::{Budget, Polyline, flatten};
+use super::grid::{Grid, GridPoint};
 use super::stroke::stroke_outline;
 use crate::load::seating::Complaint;
 use fissure_plane::Point;

@@ -2,7 +2,7 @@
 
 use crate::document::{Drawing, Origin};
 use crate::fault::{KeyPath, SceneFault};
-use crate::validate::{COORDINATE, LENGTH};
+use crate::range::{COORDINATE, LENGTH};
 use kurbo::Affine;
 use usvg::roxmltree;
 

@@ -3,7 +3,8 @@
 use super::shapes::center_of_area;
 use super::{Resolved, Resolver};
 use crate::document::MaterialKeys;
-use crate::fault::{KeyPath, SceneFault, nearest};
+use crate::fault::{KeyPath, SceneFault};
+use crate::load::nearest::nearest;
 use crate::materials::{SNOW_PLASTICITY, material_preset, material_presets};
 use crate::scene::*;
 use crate::validate::{outside, overlap};

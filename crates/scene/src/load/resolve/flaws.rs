@@ -4,8 +4,9 @@ use super::{Resolved, Resolver};
 use crate::document::FlawsKeys;
 use crate::fault::{KeyPath, SceneFault, short};
 use crate::load::scatter::{Flaws, scatter};
+use crate::range::{DEGREES, DEGREES_APART, FLAW_DENSITY, ITEMS, LENGTH, SPREAD};
 use crate::scene::{Crack, Scene};
-use crate::validate::{DEGREES, DEGREES_APART, FLAW_DENSITY, ITEMS, LENGTH, SPREAD, outside, overlap};
+use crate::validate::{outside, overlap};
 use fissure_plane::{Point, Region};
 
 /// Least distance of flaws from everything else, in cells, unless the scene says otherwise: what a tip needs around it

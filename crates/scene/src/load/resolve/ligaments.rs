@@ -1,7 +1,7 @@
 //! Tips with little material ahead of them.
 
 use super::Resolver;
-use crate::fault::{KeyPath, Warning, rounded_down, show};
+use crate::fault::{KeyPath, Warning, short, show};
 use crate::scene::{Crack, Guide, Scene};
 use fissure_plane::{Outlook, Point};
 
@@ -56,6 +56,12 @@ impl Resolver<'_> {
             self.warn(Warning::new(KeyPath::item("crack", self.origin.cracks[i]).then("line"), message, remedy));
         }
     }
+}
+
+/// A number of three digits at or just below a positive `value`: what "or less" may be said of.
+fn rounded_down(value: f64) -> f64 {
+    let unit = 10.0_f64.powf(value.log10().floor() - 2.0);
+    short((value / unit * (1.0 + 1e-9)).floor() * unit)
 }
 
 /// The live tips of a crack that no schedule moves: such a one goes on whatever is measured.

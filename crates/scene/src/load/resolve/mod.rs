@@ -18,8 +18,8 @@ use super::drawing::LoadedDrawing;
 use super::picture::Picture;
 use crate::document::Document;
 use crate::fault::{KeyPath, SceneFault, Warning};
+use crate::range::{ITEMS, LENGTH};
 use crate::scene::Scene;
-use crate::validate::{ITEMS, LENGTH};
 use fissure_plane::Vector;
 use std::cell::RefCell;
 

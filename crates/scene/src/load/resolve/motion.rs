@@ -2,11 +2,13 @@
 
 use super::shapes::{center_of_area, rectangle};
 use super::{Resolved, Resolver};
+use crate::curve::Curve;
 use crate::document::*;
 use crate::fault::{KeyPath, SceneFault};
 use crate::frame::Pose;
+use crate::range::{ANGULAR_VELOCITY, COORDINATE, VELOCITY};
 use crate::scene::*;
-use crate::validate::{ANGULAR_VELOCITY, COORDINATE, VELOCITY, unit, validate_region};
+use crate::validate::validate_region;
 use fissure_plane::{Point, Region, Vector};
 
 impl<'d> Resolver<'d> {
@@ -150,4 +152,9 @@ fn curve(list: &[[f64; 2]]) -> Curve {
 
 pub(super) fn pairs(list: &[[f64; 2]]) -> Vec<(f64, f64)> {
     list.iter().map(|&[at, value]| (at, value)).collect()
+}
+
+/// A unit vector, or the vector itself when it has no direction (which [`Scene::validate`] reports).
+fn unit(v: Vector) -> Vector {
+    v.try_normalize(0.0).unwrap_or(v)
 }

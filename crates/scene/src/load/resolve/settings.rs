@@ -2,10 +2,11 @@
 
 use super::motion::pairs;
 use super::{Resolved, Resolver};
+use crate::curve::Curve;
 use crate::document::TimeStep;
 use crate::fault::{KeyPath, SceneFault};
 use crate::presets::{solver_preset, updated_kernel};
-use crate::scene::{Curve, Material};
+use crate::scene::Material;
 use crate::settings::*;
 use crate::validate::{Clock, validate_speed};
 

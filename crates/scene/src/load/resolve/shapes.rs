@@ -1,11 +1,12 @@
 //! Shapes and lines of a scene file as regions and polylines.
 
 use super::{Resolved, Resolver};
-use crate::document::{CircleKeys, Line, Shape};
-use crate::fault::{KeyPath, SceneFault, Warning, show};
+use crate::document::{CircleKeys, Line, PolygonKeys, Shape};
+use crate::fault::{Check, KeyPath, SceneFault, Warning, show};
 use crate::load::drawing::LoadedDrawing;
 use crate::load::seating::Complaint;
-use crate::validate::{COORDINATE, LENGTH, POINTS, enough_corners, validate_region};
+use crate::range::{COORDINATE, LENGTH, POINTS};
+use crate::validate::validate_region;
 use fissure_plane::{
     Point, Region, Vector, bounds, circle_ring, clean_ring, find_crossing, oriented, polyline_length, signed_area,
 };
@@ -152,4 +153,15 @@ pub(super) fn center_of_area(regions: &[Region]) -> Point {
     }
     let area: f64 = regions.iter().flat_map(Region::rings).map(signed_area).sum();
     origin + moment / area
+}
+
+/// That an inline polygon has corners to make rings of.
+fn enough_corners(path: &KeyPath, polygon: &PolygonKeys) -> Check {
+    std::iter::once(&polygon.exterior).chain(&polygon.holes).find(|ring| ring.len() < 3).map_or(Ok(()), |ring| {
+        Err(SceneFault::new(
+            path.clone(),
+            format!("a ring has {} corners", ring.len()),
+            "a ring needs at least 3 corners",
+        ))
+    })
 }

@@ -4,9 +4,10 @@ use super::{Resolved, Resolver};
 use crate::document::ToughnessKeys;
 use crate::fault::{KeyPath, SceneFault};
 use crate::load::picture::Picture;
+use crate::range::TOUGHNESS_FACTOR;
 use crate::scene::Scene;
 use crate::toughness::{ToughnessImage, ToughnessKind, ToughnessPatch};
-use crate::validate::{TOUGHNESS_FACTOR, outside, overlap, validate_corners};
+use crate::validate::{outside, overlap, validate_corners};
 use fissure_plane::{Point, Vector, bounds};
 
 /// Factors that stand for black and white unless the scene says otherwise: a crack needs a 25th of the energy in black.

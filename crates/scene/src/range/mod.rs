@@ -5,8 +5,17 @@
 //! beyond. What lies outside is a slip of the pen (a wrong unit, a digit too many), and would overflow somewhere
 //! behind.
 
-use super::Check;
-use crate::fault::{KeyPath, SceneFault};
+#![cfg_attr(not(feature = "load"), allow(dead_code, reason = "some numbers are of scene files only"))]
+
+#[cfg(feature = "load")]
+mod bounds;
+mod count;
+
+#[cfg(feature = "load")]
+pub(crate) use bounds::pairs;
+pub(crate) use count::*;
+
+use crate::fault::{Check, KeyPath, SceneFault};
 use fissure_plane::Point;
 
 /// A range of numbers.
@@ -17,9 +26,9 @@ pub(crate) struct Range {
     /// Upper end.
     pub(crate) high: f64,
     /// Whether the ends themselves belong to it.
-    pub(super) ends: [bool; 2],
+    ends: [bool; 2],
     /// Whether infinity does too, and what it stands for.
-    pub(super) infinity: Option<&'static str>,
+    infinity: Option<&'static str>,
     unit: &'static str,
 }
 

@@ -1,8 +1,7 @@
 //! How many of each thing a scene may have. Beyond these numbers a count is a slip of the pen, or an attack on the
 //! machine's memory.
 
-use super::Check;
-use crate::fault::{KeyPath, SceneFault, short};
+use crate::fault::{Check, KeyPath, SceneFault, short};
 
 /// A bound of a number of things.
 #[derive(Debug, Clone, Copy)]
