@@ -5,7 +5,7 @@ use crate::foresight::Course;
 use crate::free_memory::available;
 use crate::grid::kernel;
 use crate::material::elastic::Elastic;
-use crate::total::Total;
+use crate::total;
 use crate::updated::Updated;
 use fissure_plane::{Matrix, Point, Vector, polyline_length};
 use fissure_scene::{Formulation, OnDistortion, Scene};
@@ -124,10 +124,10 @@ pub(crate) fn needed(scene: &Scene, formulation: Formulation) -> f64 {
     let need = match formulation {
         Formulation::Updated => Updated::memory(scene, &amounts),
         _ if scene.solver.on_distortion == OnDistortion::Switch => {
-            let (total, updated) = (Total::memory(scene, &amounts), Updated::memory(scene, &amounts));
+            let (total, updated) = (total::memory::need(scene, &amounts), Updated::memory(scene, &amounts));
             Need { solver: total.solver.max(updated.solver), state: total.state.max(updated.state) }
         }
-        _ => Total::memory(scene, &amounts),
+        _ => total::memory::need(scene, &amounts),
     };
     let frame = amounts.particles * FRAME_PARTICLE as f64 + amounts.outline_points * FRAME_OUTLINE_POINT as f64;
     let needed = PROGRAM

@@ -112,13 +112,13 @@ impl Cracks {
         self.0[id.crack].set_end(id.end, end);
     }
 
-    /// Adds a point at the end.
+    /// Adds a point at the end, for which lines will be cut.
     pub(crate) fn push(&mut self, id: TipId, point: Point) {
         self.0[id.crack].push(id.end, point);
     }
 
-    /// Moves the last point of the end.
-    pub(crate) fn move_end(&mut self, id: TipId, to: Point) {
-        self.0[id.crack].move_end(id.end, to);
+    /// Moves the end on along its last segment; lines stay cut as they are.
+    pub(crate) fn slide(&mut self, id: TipId, to: Point) {
+        self.0[id.crack].slide(id.end, to);
     }
 }

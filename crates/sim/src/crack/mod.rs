@@ -6,7 +6,7 @@ pub(crate) mod division;
 pub(crate) mod fragments;
 pub(crate) mod guide;
 
-use crate::crack::cracks::TipId;
+use crate::crack::cracks::{ENDS, TipId};
 use crate::crack::division::{CrackLine, LineEnd};
 use crate::crack::guide::GuideWalk;
 use crate::saved::{self, Fits};
@@ -23,6 +23,9 @@ pub(crate) struct Crack {
     pub(crate) points: Vec<Point>,
     /// What the first and the last point are.
     ends: [CrackEnd; 2],
+    /// Where each end was when lines were last cut for it; a tip may have moved on since, within its increment. None
+    /// before a point was added there.
+    cut_at: [Option<Point>; 2],
     /// The tips at the first and the last point; none where the drawing has no live tip.
     tips: [Option<Tip>; 2],
 }
@@ -193,6 +196,7 @@ impl Crack {
             body: crack.body as u32,
             points: subdivided(&crack.points, 0.5 * scene.cell_size),
             ends,
+            cut_at: [None; 2],
             tips: [tip(End::Start, crack.start_live), tip(End::End, crack.end_live)],
         }
     }
@@ -200,7 +204,7 @@ impl Crack {
     /// A branch of the crack `trunk` that begins at it, with a tip at its end.
     pub(crate) fn branch(trunk: usize, body: u32, points: Vec<Point>, tip: Tip) -> Self {
         let ends = [CrackEnd::Junction { crack: trunk as u32 }, CrackEnd::Tip];
-        Self { body, points, ends, tips: [None, Some(tip)] }
+        Self { body, points, ends, cut_at: [None; 2], tips: [None, Some(tip)] }
     }
 
     /// The tip at an end; none where the drawing has no live tip.
@@ -244,7 +248,22 @@ impl Crack {
         saved::ensure(has_length && self.points.iter().all(is_inside), "the line of a crack")?;
         let trunk = |end: &CrackEnd| if let CrackEnd::Junction { crack } = end { Some(*crack) } else { None };
         saved::below("the end of a crack", self.ends.iter().filter_map(trunk), count)?;
+        saved::ensure(self.cut_at.iter().flatten().all(is_inside), "the place of a tip")?;
         self.tips.iter().flatten().try_for_each(Tip::check)
+    }
+
+    /// The points as lines were last cut for them. A tip on its way through an increment is where it was at the beginning
+    /// of it: were what is cut anew for other cracks cut for the tip as it is now, nodes at the edge of what is cut anew
+    /// would be split by halves.
+    pub(crate) fn points_as_cut(&self) -> Vec<Point> {
+        let mut points = self.points.clone();
+        let last = points.len() - 1;
+        for (end, at) in ENDS.into_iter().zip([0, last]) {
+            if let (CrackEnd::Tip, Some(place)) = (self.end(end), self.cut_at[slot(end)]) {
+                points[at] = place;
+            }
+        }
+        points
     }
 
     /// Position of an end at rest [m].
@@ -281,10 +300,11 @@ impl Crack {
             End::Start => self.points.insert(0, point),
             End::End => self.points.push(point),
         }
+        self.cut_at[slot(end)] = Some(point);
     }
 
-    /// Moves the point of an end.
-    fn move_end(&mut self, end: End, to: Point) {
+    /// Moves the point of an end on along its segment.
+    fn slide(&mut self, end: End, to: Point) {
         let last = self.points.len() - 1;
         self.points[if end == End::Start { 0 } else { last }] = to;
     }

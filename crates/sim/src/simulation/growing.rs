@@ -171,7 +171,7 @@ impl Simulation {
         }
         let taken = release(distance);
         let to = if arrives { target } else { from + (target - from) * (distance / left) };
-        self.state.cracks.move_end(id, to);
+        self.state.cracks.slide(id, to);
         if let Some(tip) = self.state.cracks.tip_mut(id) {
             tip.take_up(distance);
             tip.balance = (balance + taken - cost * distance).max(0.0);

@@ -1,15 +1,18 @@
-//! The general path: particles with a stencil of their own, and probes that ride on the material.
+//! The general path: particles with a stencil of their own.
 
-use super::{FieldVectors, Run, Total};
-use crate::crack::Crack;
-use crate::crack::cracks::{Cracks, TipId};
-use crate::crack::crossing::Side;
-use crate::faces::outlines::{Outlines, Vertex};
+use super::lattice::Lattice;
+use super::motion::FieldVectors;
+use super::rows::Run;
 use crate::grid::Walker;
 use crate::grid::entries::{Entries, Entry};
+use crate::material::elastic::Elastic;
+use crate::particles::Particles;
 use crate::saved::{self, Fits};
-use fissure_scene::{CrackEnd, End, Matrix, Point, Vector};
+use fissure_plane::Matrix;
 use serde::{Deserialize, Serialize};
+
+/// A misfit below this is round-off [–].
+const NO_MISFIT: f64 = 1e-15;
 
 /// Particles with stored stencils.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -22,6 +25,7 @@ pub(super) struct CutParticles {
 }
 
 impl CutParticles {
+    /// None of so many `particles`.
     pub(super) fn new(particles: usize) -> Self {
         Self { stencils: Entries::new(particles), misfit: Vec::new(), strained: Vec::new() }
     }
@@ -39,6 +43,7 @@ impl CutParticles {
     }
 
     /// Entries of a particle, if it is on the general path.
+    #[inline]
     pub(super) fn entries_of(&self, particle: usize) -> Option<&[Entry]> {
         self.stencils.of(particle)
     }
@@ -55,8 +60,9 @@ impl CutParticles {
 
     /// Makes the displacement gradient of a particle on the general path more than its fields make it.
     ///
-    /// When a crack turns, what lies ahead of its tip between the old and the new direction changes sides, and is attached to fields that may lie a good part of
-    /// a cell away from those it had. Its strain must not jump for that: the difference is kept, and let go of slowly enough for the lattice to follow.
+    /// When a crack turns, what lies ahead of its tip between the old and the new direction changes sides, and is
+    /// attached to fields that may lie a good part of a cell away from those it had. Its strain must not jump for that:
+    /// the difference is kept, and let go of slowly enough for the lattice to follow.
     pub(super) fn set_misfit(&mut self, particle: usize, misfit: Matrix) {
         let Some(row) = self.stencils.row_of(particle) else { return };
         let was_strained = self.misfit[row] != [0.0; 4];
@@ -82,63 +88,37 @@ impl CutParticles {
         self.stencils.replace(stencils);
         self.misfit.resize(self.stencils.rows(), [0.0; 4]);
     }
-}
 
-/// A place at rest that rides on the material: a vertex of an outline, a point of a crack face, a place of a load.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct Probe {
-    /// Where it is at rest [m].
-    pub(super) rest: Point,
-    /// A hair beside it, on the side of the crack it belongs to [m].
-    pub(super) nudged: Point,
-    /// (field, weight).
-    pub(super) entries: Vec<(u32, f64)>,
-}
-
-impl Vertex for Probe {
-    fn rest(&self) -> Point {
-        self.rest
-    }
-
-    fn is_at_mouth(&self) -> bool {
-        // Only the faces of cracks are decided on beside where they are.
-        self.nudged != self.rest
-    }
-}
-
-impl Probe {
-    /// Checks a probe that was read against so many `fields`.
-    ///
-    /// # Errors
-    /// [`SimulationError::BadState`](crate::SimulationError::BadState)
-    pub(super) fn check(&self, fields: usize) -> Fits {
-        saved::finite(
-            "a probe",
-            self.rest.iter().chain(self.nudged.iter()).chain(self.entries.iter().map(|(_, w)| w)),
-        )?;
-        saved::below("a probe", self.entries.iter().map(|(field, _)| *field), fields)
-    }
-
-    /// Value of a field vector at the probe.
-    pub(super) fn value(&self, u: &FieldVectors) -> Vector {
-        let mut value = Vector::zeros();
-        for &(field, w) in &self.entries {
-            value += Vector::new(u[0][field as usize], u[1][field as usize]) * w;
+    /// Adds the forces of the particles on the general path, with or without their misfits.
+    pub(super) fn add_forces(
+        &self,
+        particles: &Particles,
+        materials: &[Elastic],
+        u: &FieldVectors,
+        with_misfits: bool,
+        force: &mut FieldVectors,
+    ) {
+        let [force_x, force_y] = force;
+        for (row, (p, entries)) in self.stencils.iter().enumerate() {
+            let mut h = if with_misfits { self.misfit_of_row(row) } else { Matrix::zeros() };
+            for e in entries {
+                let (x, y) = (u[0][e.field as usize], u[1][e.field as usize]);
+                h.m11 += x * e.gradient.x;
+                h.m12 += x * e.gradient.y;
+                h.m21 += y * e.gradient.x;
+                h.m22 += y * e.gradient.y;
+            }
+            let elastic = &materials[particles.material[p] as usize];
+            let stress = crate::first_piola_stress(&h, elastic.mu, elastic.lambda) * particles.volume[p];
+            for e in entries {
+                force_x[e.field as usize] -= stress.m11 * e.gradient.x + stress.m12 * e.gradient.y;
+                force_y[e.field as usize] -= stress.m21 * e.gradient.x + stress.m22 * e.gradient.y;
+            }
         }
-        value
     }
 }
 
-/// A misfit below this is round-off [–].
-const NO_MISFIT: f64 = 1e-15;
-
-/// A weight below this comes from the rounding of a place [–].
-const ROUND_OFF: f64 = 1e-9;
-
-/// How far beside a crack the side of a face point is decided, in cells.
-const NUDGE: f64 = 1e-6;
-
-impl Total {
+impl Lattice {
     /// Entries of a particle, cut by the cracks as they are; fields that do not exist yet are made.
     pub(super) fn make_entries(&mut self, particle: usize) -> Vec<Entry> {
         let place = self.particles.rest[particle];
@@ -155,7 +135,7 @@ impl Total {
                     continue;
                 }
                 for share in self.division.pair(place, nodes.place(a, b)) {
-                    let field = self.state.fields.find_or_add(node, &share.crossed);
+                    let field = self.layout.fields.find_or_add(node, &share.crossed);
                     let gradient = g * share.fraction + share.gradient * w;
                     entries.push(Entry { field: field as u32, weight: w * share.fraction, gradient });
                 }
@@ -239,144 +219,17 @@ impl Total {
             for p in self.cut_of_row(row, &runs) {
                 stencils.push(p);
             }
-            self.state.runs[row] = runs;
+            self.layout.runs[row] = runs;
         }
         let stencils = stencils.into_iter().map(|p| (p, self.make_entries(p))).collect();
-        self.state.cut.replace(stencils);
-        let fields = self.state.fields.len();
-        let mut mass = vec![0.0; fields];
+        self.layout.cut.replace(stencils);
+        let mut mass = vec![0.0; self.len()];
         let mut reader = self.reader();
         for p in 0..self.particles.len() {
             let m = self.particles.mass[p];
             reader.for_each_entry(p, |field, w, _| mass[field] += m * w);
         }
-        self.state.mass = mass;
-        for values in self.state.displacement.iter_mut().chain(&mut self.state.velocity) {
-            values.resize(fields, 0.0);
-        }
-    }
-
-    /// Adds the forces of the particles on the general path, with or without their misfits.
-    pub(super) fn add_cut_forces(
-        &self,
-        u: &FieldVectors,
-        with_misfits: bool,
-        force_x: &mut [f64],
-        force_y: &mut [f64],
-    ) {
-        let cut = &self.state.cut;
-        for (row, (p, entries)) in cut.stencils.iter().enumerate() {
-            let mut h = if with_misfits { cut.misfit_of_row(row) } else { Matrix::zeros() };
-            for e in entries {
-                let (x, y) = (u[0][e.field as usize], u[1][e.field as usize]);
-                h.m11 += x * e.gradient.x;
-                h.m12 += x * e.gradient.y;
-                h.m21 += y * e.gradient.x;
-                h.m22 += y * e.gradient.y;
-            }
-            let elastic = &self.elastic[self.particles.material[p] as usize];
-            let stress = crate::first_piola_stress(&h, elastic.mu, elastic.lambda) * self.particles.volume[p];
-            for e in entries {
-                force_x[e.field as usize] -= stress.m11 * e.gradient.x + stress.m12 * e.gradient.y;
-                force_y[e.field as usize] -= stress.m21 * e.gradient.x + stress.m22 * e.gradient.y;
-            }
-        }
-    }
-
-    /// A probe at `rest` that belongs to the material at `nudged`.
-    pub(super) fn probe(&self, rest: Point, nudged: Point) -> Probe {
-        Probe { rest, nudged, entries: self.probe_entries(rest, nudged) }
-    }
-
-    /// (field, weight) of a probe. Where a node has no material on the probe's side, the nearest particle carries the probe along
-    /// linearly instead: w_ip + ∇w_ip · (X − X_p), exact for rigid motion.
-    pub(super) fn probe_entries(&self, rest: Point, nudged: Point) -> Vec<(u32, f64)> {
-        let stencil = self.stencil(rest);
-        let nodes = self.grid.stencil(&stencil);
-        let mass = |field: usize| self.state.mass[field];
-        let has_material = |&node: &usize| {
-            mass(node) > 0.0 || self.state.fields.of(node).iter().any(|&field| mass(field as usize) > 0.0)
-        };
-        let mut entries = Vec::with_capacity(8);
-        for b in 0..stencil.width {
-            for a in 0..stencil.width {
-                let w = stencil.weight(a, b);
-                if w <= 1e-14 {
-                    continue;
-                }
-                let found = match nodes.at(a, b).filter(has_material) {
-                    // On the last grid line of a body, up to rounding.
-                    None if w <= ROUND_OFF => {
-                        nodes.near(a, b).find(has_material).map(|node| (node, self.grid.position(node)))
-                    }
-                    node => node.map(|node| (node, nodes.place(a, b))),
-                };
-                let Some((node, place)) = found else { return self.carried_entries(rest, nudged) };
-                for share in self.division.pair(nudged, place) {
-                    match self.state.fields.find(node, &share.crossed) {
-                        Some(field) if mass(field) > 0.0 => entries.push((field as u32, w * share.fraction)),
-                        _ => return self.carried_entries(rest, nudged),
-                    }
-                }
-            }
-        }
-        entries
-    }
-
-    fn carried_entries(&self, rest: Point, nudged: Point) -> Vec<(u32, f64)> {
-        let at = (rest - self.particles.anchor) / self.particles.spacing;
-        let center = [at.x.floor() as i32, at.y.floor() as i32];
-        let mut nearest: Option<(bool, f64, usize)> = None;
-        for reach in [2, 6] {
-            for p in
-                self.particles.within(center.map(|c| c.saturating_sub(reach)), center.map(|c| c.saturating_add(reach)))
-            {
-                let place = self.particles.rest[p];
-                let across = !self.division.crossed(place, nudged).is_empty();
-                let candidate = (across, (place - rest).norm_squared(), p);
-                if nearest.is_none_or(|n| candidate < n) {
-                    nearest = Some(candidate);
-                }
-            }
-            if matches!(nearest, Some((false, ..))) {
-                break;
-            }
-        }
-        let Some((_, _, p)) = nearest else { return Vec::new() };
-        let offset = rest - self.particles.rest[p];
-        let mut entries = Vec::with_capacity(8);
-        self.reader().for_each_entry(p, |field, w, g| entries.push((field as u32, w + g.dot(&offset))));
-        entries
-    }
-
-    /// Lays the probes of outlines and crack faces.
-    pub(super) fn lay_probes(&mut self, cracks: &Cracks) {
-        self.state.faces = cracks.iter().map(|c| self.face_probes(c)).collect();
-        self.state.outlines = Outlines::at_rest(&self.scene, |place| self.probe(place, place));
-        for id in cracks.ids().filter(|&id| cracks.end(id) == CrackEnd::Mouth) {
-            self.open_mouth(cracks, id);
-        }
-    }
-
-    /// Probes of both faces of a crack.
-    pub(super) fn face_probes(&self, crack: &Crack) -> [Vec<Probe>; 2] {
-        [Side::Above, Side::Below]
-            .map(|side| (0..crack.points.len()).map(|k| self.face_probe(crack, k, side)).collect())
-    }
-
-    /// Probe of one face at point `k` of a crack.
-    pub(super) fn face_probe(&self, crack: &Crack, k: usize, side: Side) -> Probe {
-        let before = crack.points[k.saturating_sub(1)];
-        let after = crack.points[(k + 1).min(crack.points.len() - 1)];
-        let tangent = (after - before).normalize();
-        let normal = Vector::new(-tangent.y, tangent.x) * side.sign();
-        self.probe(crack.points[k], crack.points[k] + normal * (NUDGE * self.grid.cell_size))
-    }
-
-    /// Doubles the outline where a crack mouths at it: the two new vertices are the end points of the faces.
-    pub(super) fn open_mouth(&mut self, cracks: &Cracks, id: TipId) {
-        let at = if id.end == End::Start { 0 } else { cracks.of(id).points.len() - 1 };
-        let faces = self.state.faces[id.crack].each_ref().map(|face| face[at].clone());
-        self.state.outlines.open_mouth(cracks.position(id), id.end, faces, self.grid.cell_size);
+        self.layout.mass = mass;
+        self.invert_masses();
     }
 }

@@ -1,7 +1,6 @@
 //! What the solver holds, counted before it is there.
 
-use super::Total;
-use super::cut::Probe;
+use super::probes::Probe;
 use crate::grid::entries::Entry;
 use crate::grid::kernel;
 use crate::memory::{Amounts, Need};
@@ -18,28 +17,26 @@ const PROBE_ENTRIES: usize = 8;
 /// A whole number that is as large as it can be, as bytes of a state.
 const LONGEST_INTEGER: usize = 5;
 
-impl Total {
-    /// What a run of `scene` holds.
-    pub(crate) fn memory(scene: &Scene, amounts: &Amounts) -> Need {
-        let has_rows = scene.solver.kernel == Kernel::Bilinear
-            && (scene.cell_size - 2.0 * scene.particle_spacing).abs() < 1e-12 * scene.cell_size;
-        let cut_particles = if has_rows { amounts.cut_particles } else { amounts.particles };
-        let entries = kernel::width(scene.solver.kernel).pow(2) * size_of::<Entry>();
-        let cut = cut_particles * (entries + CUT_PARTICLE) as f64;
-        // While entries are laid they are there twice.
-        let laid = cut_particles * entries as f64;
-        let probe = size_of::<Probe>() + PROBE_ENTRIES * size_of::<(u32, f64)>();
-        let number = size_of::<f64>();
-        Need {
-            solver: amounts.nodes * (NUMBERS_PER_FIELD * number) as f64
-                + amounts.particles * size_of::<u32>() as f64
-                + cut
-                + laid
-                + amounts.outline_points * probe as f64,
-            state: amounts.nodes * (SAVED_PER_FIELD * number) as f64
-                + amounts.particles * LONGEST_INTEGER as f64
-                + cut
-                + amounts.outline_points * size_of::<Probe>() as f64,
-        }
+/// What a run of `scene` holds.
+pub(crate) fn need(scene: &Scene, amounts: &Amounts) -> Need {
+    let has_rows = scene.solver.kernel == Kernel::Bilinear
+        && (scene.cell_size - 2.0 * scene.particle_spacing).abs() < 1e-12 * scene.cell_size;
+    let cut_particles = if has_rows { amounts.cut_particles } else { amounts.particles };
+    let entries = kernel::width(scene.solver.kernel).pow(2) * size_of::<Entry>();
+    let cut = cut_particles * (entries + CUT_PARTICLE) as f64;
+    // While entries are laid they are there twice.
+    let laid = cut_particles * entries as f64;
+    let probe = size_of::<Probe>() + PROBE_ENTRIES * size_of::<(u32, f64)>();
+    let number = size_of::<f64>();
+    Need {
+        solver: amounts.nodes * (NUMBERS_PER_FIELD * number) as f64
+            + amounts.particles * size_of::<u32>() as f64
+            + cut
+            + laid
+            + amounts.outline_points * probe as f64,
+        state: amounts.nodes * (SAVED_PER_FIELD * number) as f64
+            + amounts.particles * LONGEST_INTEGER as f64
+            + cut
+            + amounts.outline_points * size_of::<Probe>() as f64,
     }
 }

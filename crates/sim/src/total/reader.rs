@@ -1,19 +1,21 @@
 //! What fields make of particles: values, gradients and strains, particle by particle.
 
-use super::{FieldVectors, Total, stencil_of};
+use super::lattice::Lattice;
+use super::motion::{FieldVectors, Motion, at};
 use crate::grid::Walker;
-use fissure_scene::{Matrix, Vector};
+use fissure_plane::{Matrix, Vector};
 
-/// Reads fields at particles. Particles that follow each other share most of their nodes, which one reader does not look up again.
+/// Reads fields at particles. Particles that follow each other share most of their nodes, which one reader does not
+/// look up again.
 #[derive(Debug)]
 pub(super) struct Reader<'a> {
-    solver: &'a Total,
+    lattice: &'a Lattice,
     walker: Walker<'a>,
 }
 
 /// How a particle has moved.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Motion {
+pub(super) struct ParticleMotion {
     /// Displacement [m].
     pub(super) displacement: Vector,
     /// Velocity [m/s].
@@ -24,7 +26,7 @@ pub(super) struct Motion {
 
 /// How fast a particle moves.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Rates {
+pub(super) struct ParticleRates {
     /// Velocity [m/s].
     pub(super) velocity: Vector,
     /// Its gradient [1/s].
@@ -33,24 +35,22 @@ pub(super) struct Rates {
     pub(super) acceleration: Vector,
 }
 
-impl Total {
-    /// A reader of fields at particles.
-    pub(super) fn reader(&self) -> Reader<'_> {
-        Reader { solver: self, walker: Walker::new(&self.grid) }
+impl<'a> Reader<'a> {
+    /// A reader of fields at the particles of `lattice`.
+    pub(super) fn new(lattice: &'a Lattice) -> Self {
+        Self { lattice, walker: Walker::new(&lattice.grid) }
     }
-}
 
-impl Reader<'_> {
     /// Calls `visit` with (field, weight, gradient) for every entry of the stencil of a particle.
     #[inline]
     pub(super) fn for_each_entry(&mut self, particle: usize, mut visit: impl FnMut(usize, f64, Vector)) {
-        let solver = self.solver;
-        if let Some(entries) = solver.state.cut.entries_of(particle) {
+        let lattice = self.lattice;
+        if let Some(entries) = lattice.layout.cut.entries_of(particle) {
             for e in entries {
                 visit(e.field as usize, e.weight, e.gradient);
             }
         } else {
-            let stencil = stencil_of(&solver.scene, &solver.grid, solver.particles.rest[particle]);
+            let stencil = lattice.stencil(lattice.particles.rest[particle]);
             // All nodes of a particle exist.
             let Some(rows) = self.walker.rows(stencil.first, stencil.width) else { return };
             for b in 0..stencil.width {
@@ -68,43 +68,38 @@ impl Reader<'_> {
         gradient
     }
 
-    /// Displacement gradient H = F − I of a particle.
-    pub(super) fn strain(&mut self, particle: usize) -> Matrix {
-        let state = &self.solver.state;
-        self.gradient(particle, &state.displacement) + state.cut.misfit_of(particle)
+    /// Displacement gradient H = F − I of a particle for the displacement `u`.
+    pub(super) fn strain(&mut self, particle: usize, u: &FieldVectors) -> Matrix {
+        self.gradient(particle, u) + self.lattice.layout.cut.misfit_of(particle)
     }
 
     /// Displacement, velocity and strain of a particle.
-    pub(super) fn motion(&mut self, particle: usize) -> Motion {
-        let state = &self.solver.state;
+    pub(super) fn motion(&mut self, particle: usize, fields: &Motion) -> ParticleMotion {
         let (mut displacement, mut velocity, mut gradient) = (Vector::zeros(), Vector::zeros(), Matrix::zeros());
         self.for_each_entry(particle, |field, w, g| {
-            let u = at(&state.displacement, field);
+            let u = fields.displacement(field);
             displacement += u * w;
-            velocity += at(&state.velocity, field) * w;
+            velocity += fields.velocity(field) * w;
             add_outer(&mut gradient, u, g);
         });
-        Motion { displacement, velocity, strain: gradient + state.cut.misfit_of(particle) }
+        ParticleMotion { displacement, velocity, strain: gradient + self.lattice.layout.cut.misfit_of(particle) }
     }
 
     /// Velocity, its gradient, and acceleration of a particle.
-    pub(super) fn rates(&mut self, particle: usize) -> Rates {
-        let solver = self.solver;
-        let mut rates =
-            Rates { velocity: Vector::zeros(), velocity_gradient: Matrix::zeros(), acceleration: Vector::zeros() };
+    pub(super) fn rates(&mut self, particle: usize, fields: &Motion) -> ParticleRates {
+        let mut rates = ParticleRates {
+            velocity: Vector::zeros(),
+            velocity_gradient: Matrix::zeros(),
+            acceleration: Vector::zeros(),
+        };
         self.for_each_entry(particle, |field, w, g| {
-            let v = at(&solver.state.velocity, field);
+            let v = fields.velocity(field);
             rates.velocity += v * w;
             add_outer(&mut rates.velocity_gradient, v, g);
-            rates.acceleration += at(&solver.acceleration, field) * w;
+            rates.acceleration += at(&fields.acceleration, field) * w;
         });
         rates
     }
-}
-
-#[inline]
-fn at(u: &FieldVectors, field: usize) -> Vector {
-    Vector::new(u[0][field], u[1][field])
 }
 
 /// Adds v ⊗ g.

@@ -1,16 +1,19 @@
 //! Internal forces of whole rows of uncut cells, without branches.
 //!
-//! On a lattice of 2×2 particles per cell and bilinear kernels the stencil is the same in every uncut cell, so a run of such cells is one
-//! loop over contiguous arrays, and an elastic particle in it needs no state at all: H = Σ u_i ⊗ ∇w_ip.
+//! On a lattice of 2×2 particles per cell and bilinear kernels the stencil is the same in every uncut cell, so a run of
+//! such cells is one loop over contiguous arrays, and an elastic particle in it needs no state at all: H = Σ u_i ⊗
+//! ∇w_ip.
 
-use super::FieldVectors;
+use super::lattice::Lattice;
+use super::motion::FieldVectors;
 use crate::grid::Grid;
 use std::ops::Range;
 
 /// Cells treated at once.
 const BLOCK: usize = 32;
 
-/// A run of uncut cells of one material in one row of cells. Its nodes, one more than cells, are side by side in the row below and in the row above.
+/// A run of uncut cells of one material in one row of cells. Its nodes, one more than cells, are side by side in the
+/// row below and in the row above.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(super) struct Run {
     /// Lower left node of its first cell.
@@ -41,33 +44,33 @@ impl Run {
 
 /// Elastic constants of a run, with lengths folded in.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct RowConstants {
+struct RowConstants {
     /// 2μ V_p / h and λ V_p / h: stress times particle volume over cell size [N/m].
-    pub(super) two_mu: f64,
-    pub(super) lambda: f64,
+    two_mu: f64,
+    lambda: f64,
     /// 1/h [1/m].
-    pub(super) inverse_cell_size: f64,
+    inverse_cell_size: f64,
 }
 
 /// Every other row of cells: none shares a node with another.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct CellRows<'a> {
+struct CellRows<'a> {
     /// Runs above each row of nodes.
-    pub(super) runs: &'a [Vec<Run>],
-    pub(super) grid: &'a Grid,
+    runs: &'a [Vec<Run>],
+    grid: &'a Grid,
     /// Of each material.
-    pub(super) constants: &'a [RowConstants],
+    constants: &'a [RowConstants],
     /// Displacements of all fields.
-    pub(super) u: &'a FieldVectors,
+    u: &'a FieldVectors,
     /// Rows counted: even (0) or odd (1) ones.
-    pub(super) parity: usize,
+    parity: usize,
     /// Nodes from which on rows are shared out between threads.
-    pub(super) part: usize,
+    part: usize,
 }
 
 impl CellRows<'_> {
     /// Adds the forces of the cells above `rows` of nodes to `forces`, which begin at node `start`.
-    pub(super) fn add_forces(&self, rows: Range<usize>, start: usize, forces: [&mut [f64]; 2]) {
+    fn add_forces(&self, rows: Range<usize>, start: usize, forces: [&mut [f64]; 2]) {
         let [force_x, force_y] = forces;
         if force_x.len() > self.part && rows.len() > 2 {
             // Cut below a row of nodes that belongs to no cell of the row before.
@@ -94,6 +97,41 @@ impl CellRows<'_> {
                 add_forces(self.constants[run.material as usize], u, [x, y]);
             }
         }
+    }
+}
+
+/// From so many nodes on, rows go to several threads; below, handing out the work costs about as much as the work. The
+/// result is the same either way.
+const PARALLEL_NODES: usize = 20_000;
+
+impl Lattice {
+    /// Internal forces for the displacement `u` into `force`, with or without misfits.
+    pub(super) fn internal_forces(&self, u: &FieldVectors, with_misfits: bool, force: &mut FieldVectors) {
+        for f in force.iter_mut() {
+            f.clear();
+            f.resize(self.len(), 0.0);
+        }
+        let volume = self.particles.spacing * self.particles.spacing;
+        let inverse_cell_size = 1.0 / self.grid.cell_size;
+        let constants: Vec<RowConstants> = self
+            .materials
+            .iter()
+            .map(|e| RowConstants {
+                two_mu: 2.0 * e.mu * volume * inverse_cell_size,
+                lambda: e.lambda * volume * inverse_cell_size,
+                inverse_cell_size,
+            })
+            .collect();
+        let threads = crate::threads::current_num_threads();
+        let part = if self.grid.len() >= PARALLEL_NODES && threads > 1 { PARALLEL_NODES / 4 } else { usize::MAX };
+        // Two neighbouring rows of cells share a row of nodes: even rows first, then odd ones, each pass without a
+        // shared node. The order of additions at a node is the same for any number of threads.
+        for parity in 0..2 {
+            let rows = CellRows { runs: &self.layout.runs, grid: &self.grid, constants: &constants, u, parity, part };
+            let [force_x, force_y] = &mut *force;
+            rows.add_forces(0..self.grid.rows(), 0, [force_x, force_y]);
+        }
+        self.layout.cut.add_forces(&self.particles, &self.materials, u, with_misfits, force);
     }
 }
 
@@ -155,7 +193,8 @@ fn cell_forces(count: usize, constants: RowConstants, u: [&[f64]; 8], corner: &m
                 let h21 = (1.0 - b) * bottom[1] + b * top[1];
                 let h12 = (1.0 - a) * left[0] + a * right[0];
                 let h22 = (1.0 - a) * left[1] + a * right[1];
-                // F − R without cancellation (see constitutive.rs), for any turn: 1 − cosine/r = sine²/(r (r + |cosine|)), or (r + |cosine|)/r when negative.
+                // F − R without cancellation (see constitutive.rs), for any turn: 1 − cosine/r = sine²/(r (r +
+                // |cosine|)), or (r + |cosine|)/r when negative.
                 let cosine = 2.0 + h11 + h22;
                 let sine = h21 - h12;
                 let r_squared = cosine * cosine + sine * sine;

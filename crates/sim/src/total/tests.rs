@@ -1,7 +1,7 @@
 //! Conservation in the total Lagrangian solver, against closed forms.
 #![allow(clippy::unwrap_used)]
 
-use super::Total;
+use super::{Total, internal_forces};
 use crate::crack::cracks::{Cracks, TipId};
 use crate::particles::Particles;
 use crate::solver::Solver;
@@ -13,7 +13,8 @@ use std::sync::Arc;
 /// The tip of the only crack.
 const TIP: TipId = TipId { crack: 0, end: End::End };
 
-/// A square of 20 × 20 cells with an edge crack, its faces free to pass: contact acts at one node of two places, which is no couple-free pair of forces.
+/// A square of 20 × 20 cells with an edge crack, its faces free to pass: contact acts at one node of two places, which
+/// is no couple-free pair of forces.
 fn cracked_plate() -> Scene {
     let mut scene = test_scenes::free_body(test_scenes::rectangle([0.0, 0.0], [4.0, 4.0]), 0.1);
     scene.solver.formulation = Formulation::Total;
@@ -47,7 +48,8 @@ fn a_spinning_cracked_plate_keeps_its_momenta() {
     assert!((angular_after / angular - 1.0).abs() < 1e-10, "{angular} {angular_after}");
 }
 
-/// Truth: taking up new crack points moves mass and momentum between the fields of a node, so both sums stay, and kinetic energy cannot rise.
+/// Truth: taking up new crack points moves mass and momentum between the fields of a node, so both sums stay, and
+/// kinetic energy cannot rise.
 #[test]
 fn growth_keeps_mass_and_momentum() {
     let mut scene = cracked_plate();
@@ -59,7 +61,7 @@ fn growth_keeps_mass_and_momentum() {
         total.step(&cracks, time_step * f64::from(step), time_step, &mut |_| ()).unwrap();
     }
     for k in 0..12 {
-        let mass: f64 = total.state.mass.iter().sum();
+        let mass: f64 = total.lattice.layout.mass.iter().sum();
         let (linear, _) = total.momenta();
         let kinetic = total.kinetic_energy();
         let tip = cracks.position(TIP);
@@ -67,7 +69,7 @@ fn growth_keeps_mass_and_momentum() {
         cracks.push(TIP, tip + turn);
         total.recut(&cracks, &[TIP]);
         let (linear_after, _) = total.momenta();
-        assert!((total.state.mass.iter().sum::<f64>() / mass - 1.0).abs() < 1e-12);
+        assert!((total.lattice.layout.mass.iter().sum::<f64>() / mass - 1.0).abs() < 1e-12);
         assert!((linear_after - linear).norm() < 1e-12 * linear.norm(), "{linear} {linear_after}");
         assert!(total.kinetic_energy() <= kinetic * (1.0 + 1e-12));
         total.step(&cracks, 0.0, time_step, &mut |_| ()).unwrap();
@@ -82,10 +84,10 @@ fn ten_turns_leave_no_stress() {
     let young = scene.materials[0].young_modulus;
     for k in 0..=40 {
         let (sine, cosine) = (TAU * 10.0 * f64::from(k) / 40.0 + 0.1).sin_cos();
-        for d in 0..total.state.mass.len() {
-            let x = total.grid.position(total.state.fields.node(d));
-            total.state.displacement[0][d] = (cosine - 1.0) * x.x - sine * x.y;
-            total.state.displacement[1][d] = sine * x.x + (cosine - 1.0) * x.y;
+        for d in 0..total.lattice.layout.mass.len() {
+            let x = total.lattice.position(d);
+            total.motion.displacement[0][d] = (cosine - 1.0) * x.x - sine * x.y;
+            total.motion.displacement[1][d] = sine * x.x + (cosine - 1.0) * x.y;
         }
         let worst = total.particle_frame().cauchy_stress.iter().map(|s| s.norm()).fold(0.0, f64::max);
         assert!(worst < 1e-10 * young, "{worst}");
@@ -105,23 +107,23 @@ fn opened() -> (Total, Cracks) {
     (total, cracks)
 }
 
-/// Truth: a cut by itself strains nothing. The crack turns by 63°, so that particles ahead of it change sides while the faces are apart; what the lattice holds stays to
-/// round-off, and what the ties hold does not rise.
+/// Truth: a cut by itself strains nothing. The crack turns by 63°, so that particles ahead of it change sides while the
+/// faces are apart; what the lattice holds stays to round-off, and what the ties hold does not rise.
 #[test]
 fn a_turning_crack_leaves_the_strain_as_it_is() {
     let (mut total, mut cracks) = opened();
-    let ties = total.state.ties.energy(&total.state.displacement);
-    let lattice = total.strain_energy() - ties;
+    let ties = total.ties.energy(&total.motion.displacement);
+    let lattice = total.energies().strain - ties;
     let tip = cracks.position(TIP);
-    cracks.push(TIP, tip + Vector::new(0.05, 0.1) * total.grid.cell_size);
+    cracks.push(TIP, tip + Vector::new(0.05, 0.1) * total.lattice.grid.cell_size);
     total.recut(&cracks, &[TIP]);
-    let ties_after = total.state.ties.energy(&total.state.displacement);
-    let lattice_after = total.strain_energy() - ties_after;
+    let ties_after = total.ties.energy(&total.motion.displacement);
+    let lattice_after = total.energies().strain - ties_after;
     assert!((lattice_after / lattice - 1.0).abs() < 1e-12, "{lattice} {lattice_after}");
     assert!(ties_after <= ties * (1.0 + 1e-12), "{ties} {ties_after}");
     // The strain that no field accounts for is let go of.
     let misfit = |total: &Total| -> f64 {
-        (0..total.particles.len()).map(|p| total.state.cut.misfit_of(p).norm()).fold(0.0, f64::max)
+        (0..total.lattice.particles.len()).map(|p| total.lattice.layout.cut.misfit_of(p).norm()).fold(0.0, f64::max)
     };
     let first = misfit(&total);
     assert!(first > 1e-6, "{first}");
@@ -132,14 +134,15 @@ fn a_turning_crack_leaves_the_strain_as_it_is() {
     assert!(misfit(&total) < 1e-6 * first, "{first} {}", misfit(&total));
 }
 
-/// Truth: Rayleigh's quotient, (K + k)/(M + k/ω²) ≤ ω². At nearly the largest step of the lattice without ties, ties included, the energy stays bounded.
+/// Truth: Rayleigh's quotient, (K + k)/(M + k/ω²) ≤ ω². At nearly the largest step of the lattice without ties, ties
+/// included, the energy stays bounded.
 #[test]
 fn ties_ask_for_no_shorter_step() {
     let (mut total, cracks) = opened();
     let time_step = 0.98 * total.stable_time_step();
-    let energy = |total: &Total| total.kinetic() + total.strain_energy();
+    let energy = |total: &Total| total.kinetic_energy() + total.energies().strain;
     let first = energy(&total);
-    assert!(total.state.ties.energy(&total.state.displacement) > 0.0);
+    assert!(total.ties.energy(&total.motion.displacement) > 0.0);
     for step in 0..3000 {
         total.step(&cracks, time_step * f64::from(step), time_step, &mut |_| ()).unwrap();
     }
@@ -151,42 +154,42 @@ fn ties_ask_for_no_shorter_step() {
 fn a_sliding_tip_takes_what_was_said() {
     let (mut total, mut cracks) = opened();
     let tip = cracks.position(TIP);
-    let h = total.grid.cell_size;
+    let h = total.lattice.grid.cell_size;
     cracks.push(TIP, tip + Vector::new(1e-4 * h, 0.0));
     total.recut(&cracks, &[TIP]);
     // Displacements and velocities of one moment, so that both kicks see the same opening.
     total.stop();
-    let (before, distance) = (total.strain_energy(), 0.1 * h);
+    let (before, distance) = (total.energies().strain, 0.1 * h);
     let said = total.release(&cracks, TIP)(distance);
     let from = cracks.position(TIP);
-    cracks.move_end(TIP, from + Vector::new(distance, 0.0));
+    cracks.slide(TIP, from + Vector::new(distance, 0.0));
     total.slide(&cracks, TIP);
-    let taken = before - total.strain_energy();
+    let taken = before - total.energies().strain;
     assert!(taken > 0.0 && (taken / said - 1.0).abs() < 1e-9, "{said} {taken}");
 }
 
-/// Truth: nothing has been cut. What is cut anew around a tip that is on its way through an increment, as for another crack beside it, stays as it is,
-/// wherever in a cell the tip is.
+/// Truth: nothing has been cut. What is cut anew around a tip that is on its way through an increment, as for another
+/// crack beside it, stays as it is, wherever in a cell the tip is.
 #[test]
 fn a_tip_on_its_way_is_cut_as_it_was() {
     let (mut total, mut cracks) = opened();
-    let increment = Vector::new(total.scene.growth.increment * total.grid.cell_size, 0.0);
+    let increment = Vector::new(total.scene.growth.increment * total.lattice.grid.cell_size, 0.0);
     for _ in 0..8 {
         let from = cracks.position(TIP);
         cracks.push(TIP, from + increment * 1e-3);
         total.recut(&cracks, &[TIP]);
-        cracks.move_end(TIP, from + increment);
+        cracks.slide(TIP, from + increment);
         total.slide(&cracks, TIP);
-        let (fields, mass) = (total.state.fields.len(), total.state.mass.clone());
-        total.division = Total::division_of(&total.scene, &cracks, &total.state.cut_at);
-        total.recut_particles(&[(from - Vector::repeat(1.0), from + Vector::repeat(0.1))]);
-        assert_eq!(total.state.fields.len(), fields);
-        assert_eq!(total.state.mass, mass);
+        let (fields, mass) = (total.lattice.len(), total.lattice.layout.mass.clone());
+        let around = [(from - Vector::repeat(1.0), from + Vector::repeat(0.1))];
+        total.lattice.recut(&cracks, &around, &mut total.motion);
+        assert_eq!(total.lattice.len(), fields);
+        assert_eq!(total.lattice.layout.mass, mass);
     }
 }
 
-/// Truth: the faces meet where they meet. Halves that are thrown against each other press, at no node do they overlap, and what they did to
-/// each other in a step does not depend on a cut made after it.
+/// Truth: the faces meet where they meet. Halves that are thrown against each other press, at no node do they overlap,
+/// and what they did to each other in a step does not depend on a cut made after it.
 #[test]
 fn faces_meet_and_do_not_sink_in() {
     let mut scene = cracked_plate();
@@ -197,11 +200,11 @@ fn faces_meet_and_do_not_sink_in() {
     test_scenes::set_motion(&mut scene, upper, [0.02, 0.05], 0.0, [0.0, 0.0]);
     let (mut total, mut cracks) = solver(&scene);
     let time_step = 0.5 * total.stable_time_step();
-    let force = |total: &Total| total.face_forces(0).map(|(_, force)| force).sum::<Vector>();
+    let force = |total: &Total| total.contacts.forces(0, &total.lattice).map(|(_, force)| force).sum::<Vector>();
     let (mut pressed, mut widest) = (0, 0.0_f64);
     for step in 0..1500 {
         total.step(&cracks, time_step * f64::from(step), time_step, &mut |_| ()).unwrap();
-        let opening = total.least_and_widest_gap();
+        let opening = total.contacts.least_and_widest_gap(&total.probes, &total.motion);
         widest = widest.max(opening[1]);
         // Normals turn while the faces move.
         assert!(opening[0] > -1e-4 * widest, "step {step}: overlap {} of {widest}", opening[0]);
@@ -213,12 +216,13 @@ fn faces_meet_and_do_not_sink_in() {
     }
     let before = force(&total);
     let tip = cracks.position(TIP);
-    cracks.push(TIP, tip + Vector::new(0.1, 0.02) * total.grid.cell_size);
+    cracks.push(TIP, tip + Vector::new(0.1, 0.02) * total.lattice.grid.cell_size);
     total.recut(&cracks, &[TIP]);
     assert!((force(&total) - before).norm() < 1e-12 * before.norm(), "{before} {}", force(&total));
 }
 
-/// Truth: the construction. A second plate far away adds the nodes and the bytes of the first, be it 100 m or 100 km off.
+/// Truth: the construction. A second plate far away adds the nodes and the bytes of the first, be it 100 m or 100 km
+/// off.
 #[test]
 fn nodes_and_state_go_with_the_material() {
     let near = cracked_plate();
@@ -228,7 +232,12 @@ fn nodes_and_state_go_with_the_material() {
         test_scenes::add_body(&mut scene, [away, 0.5 * away]);
         let (both, _) = solver(&scene);
         // The second plate has no crack, and may lie otherwise within its band of rows.
-        assert!(both.grid.len() < 2 * alone.grid.len() + 300, "{} {}", both.grid.len(), alone.grid.len());
+        assert!(
+            both.lattice.grid.len() < 2 * alone.lattice.grid.len() + 300,
+            "{} {}",
+            both.lattice.grid.len(),
+            alone.lattice.grid.len()
+        );
         assert!(
             both.save().unwrap().len() < 2 * alone.save().unwrap().len() + 10_000,
             "{}",
@@ -248,12 +257,12 @@ fn threads_change_no_bit_of_the_forces() {
     scene.solver.formulation = Formulation::Total;
     scene.solver.kernel = Kernel::Bilinear;
     let (total, _) = solver(&scene);
-    let fields = total.state.mass.len();
+    let fields = total.lattice.layout.mass.len();
     let u = [0.37, 0.71].map(|rate| (0..fields).map(|d| 1e-3 * (d as f64 * rate).sin()).collect());
     let forces = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let mut force = Default::default();
-        pool.install(|| total.internal_forces(&u, &mut force));
+        pool.install(|| internal_forces(&total.lattice, &total.ties, &u, &mut force));
         force
     };
     let alone = forces(1);

@@ -1,10 +1,10 @@
-//! What is made from the state: loads, supports, surfaces and contacts as they act on fields. Made once, and anew only near what has grown.
+//! Where a crack has grown: what is made from the lattice is made anew there and stays elsewhere.
 
-use super::Total;
-use crate::SimulationError;
+use super::lattice::Lattice;
 use crate::crack::Crack;
 use crate::crack::cracks::{Cracks, TipId};
-use fissure_scene::{End, Point};
+use fissure_plane::{Point, Vector};
+use fissure_scene::End;
 
 /// Where something has changed.
 #[derive(Debug)]
@@ -41,38 +41,24 @@ impl Near {
 
     /// The boxes, widened by `margin` [m].
     pub(super) fn widened(&self, margin: f64) -> impl Iterator<Item = (Point, Point)> {
-        let by = fissure_scene::Vector::repeat(margin);
+        let by = Vector::repeat(margin);
         self.boxes.iter().map(move |(low, high)| (low - by, high + by))
     }
-}
 
-impl Total {
-    /// Everything that is made from the state, made anew.
-    ///
-    /// # Errors
-    /// When a load or support selects nothing.
-    pub(super) fn refresh(&mut self, cracks: &Cracks) -> Result<(), SimulationError> {
-        self.refresh_masses();
-        self.loads = self.point_forces()?;
-        self.constraints = self.constraints_of_supports()?;
-        self.surface = self.surface_nodes();
-        self.contacts = self.contact_pairs(cracks);
-        Ok(())
-    }
-
-    /// The same where something has changed; the result is that of [`Total::refresh`], order included.
-    pub(super) fn refresh_near(&mut self, near: &Near, cracks: &Cracks) {
-        self.refresh_masses();
-        self.refresh_loads(near);
-        self.constraints = self.constraints_near(near);
-        self.surface = self.surface_near(near);
-        self.contacts = self.contacts_near(near, cracks);
-        self.lay_ties_near(near, cracks);
-    }
-
-    fn refresh_masses(&mut self) {
-        self.resize_fields();
-        self.inverse_mass.clear();
-        self.inverse_mass.extend(self.state.mass.iter().map(|&m| if m > 0.0 { 1.0 / m } else { 0.0 }));
+    /// The fields where something has changed, rising, with the places of their nodes at rest [m].
+    pub(super) fn fields(&self, lattice: &Lattice) -> Vec<(usize, Point)> {
+        let mut nodes: Vec<(usize, Point)> = Vec::new();
+        for (low, high) in self.widened(0.0) {
+            let around = lattice.grid.nodes_around(low, high).map(|(node, place)| (node, lattice.grid.place(place)));
+            nodes.extend(around.filter(|&(_, place)| self.contains(place)));
+        }
+        let further = |&(node, place): &(usize, Point)| {
+            lattice.layout.fields.of(node).iter().map(move |&field| (field as usize, place))
+        };
+        let mut fields: Vec<(usize, Point)> = nodes.iter().flat_map(further).collect();
+        fields.append(&mut nodes);
+        fields.sort_unstable_by_key(|f| f.0);
+        fields.dedup_by_key(|f| f.0);
+        fields
     }
 }

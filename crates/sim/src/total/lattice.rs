@@ -1,0 +1,208 @@
+//! The lattice: nodes, particles, and what weight every particle has at every field. It changes only where a crack
+//! grows.
+
+use super::cut::CutParticles;
+use super::reader::Reader;
+use super::rows::Run;
+use crate::SimulationError;
+use crate::crack::cracks::Cracks;
+use crate::crack::division::{CrackLine, Division, TipCut};
+use crate::grid::Grid;
+use crate::grid::fields::Fields;
+use crate::grid::kernel;
+use crate::material::elastic::Elastic;
+use crate::particles::Particles;
+use crate::saved::{self, Fits};
+use fissure_plane::Point;
+use fissure_scene::{Kernel, Scene, TipDivision};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Nodes and particles at rest, divided by the cracks.
+#[derive(Debug)]
+pub(super) struct Lattice {
+    /// The nodes.
+    pub(super) grid: Grid,
+    /// The particles at rest.
+    pub(super) particles: Arc<Particles>,
+    /// The materials of the scene.
+    pub(super) materials: Vec<Elastic>,
+    /// The cracks as they divide pairs of a particle and a node.
+    pub(super) division: Division,
+    /// How particles see nodes now.
+    pub(super) layout: Layout,
+    /// One over the mass of each field [m/kg]; zero where there is none.
+    pub(super) inverse_mass: Vec<f64>,
+    kernel: Kernel,
+    tip_division: TipDivision,
+    /// How far ahead of a tip nodes are split, in cells.
+    split_ahead: f64,
+}
+
+/// What of a lattice depends on how its cracks came to be where they are.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Layout {
+    /// Fields at nodes.
+    pub(super) fields: Fields,
+    /// Mass of each field [kg/m].
+    pub(super) mass: Vec<f64>,
+    /// Particles on the general path with their stencils.
+    pub(super) cut: CutParticles,
+    /// Runs of uncut cells above each row of nodes.
+    pub(super) runs: Vec<Vec<Run>>,
+}
+
+impl Lattice {
+    /// The nodes and particles of `scene`, not yet cut: see [`Lattice::cut_all`]. Nodes are split `split_ahead` cells
+    /// ahead of a tip.
+    ///
+    /// # Errors
+    /// When the bodies reach too far to count their cells.
+    pub(super) fn new(scene: &Scene, particles: Arc<Particles>, split_ahead: f64) -> Result<Self, SimulationError> {
+        let (mut low, mut high) = fissure_plane::bounds(&[]);
+        for body in &scene.bodies {
+            let (l, h) = body.region.bounds();
+            (low, high) = (low.inf(&l), high.sup(&h));
+        }
+        let kernel = scene.solver.kernel;
+        // The wider kernels reach one node beyond the cell.
+        let margin = if kernel::width(kernel) == 2 { 0 } else { 1 };
+        let empty = Grid::around(particles.anchor, low, high, scene.cell_size, margin)
+            .ok_or(SimulationError::TooWide { width: (high - low).amax(), cell_size: scene.cell_size })?;
+        let mut grid = empty.clone();
+        let lowest = particles.rest.iter().map(|&place| stencil(kernel, particles.spacing, &empty, place).first);
+        grid.lay(lowest, kernel::width(kernel), 0);
+        let (tip_division, cut) = (scene.solver.tip_division, TipCut::tied(split_ahead));
+        let layout = Layout {
+            fields: Fields::new(grid.len()),
+            mass: vec![0.0; grid.len()],
+            cut: CutParticles::new(particles.len()),
+            runs: vec![Vec::new(); grid.rows()],
+        };
+        Ok(Self {
+            grid,
+            particles,
+            materials: scene.materials.iter().map(|m| Elastic::new(m, scene.plane)).collect(),
+            division: Division::new(&[], tip_division, cut, scene.cell_size, scene.particle_spacing, 1.0),
+            layout,
+            inverse_mass: Vec::new(),
+            kernel,
+            tip_division,
+            split_ahead,
+        })
+    }
+
+    /// Divides pairs by `cracks` from now on.
+    pub(super) fn set_cracks(&mut self, cracks: &Cracks) {
+        // A line from a particle inside the body to a node outside may pass a mouth by as much as the kernel reaches.
+        let reach = self.reach();
+        let beyond = 2.0 * reach * self.grid.cell_size;
+        let lines: Vec<CrackLine> =
+            cracks.iter().enumerate().map(|(i, c)| c.line(i, c.points_as_cut(), beyond)).collect();
+        let cut = TipCut::tied(self.split_ahead);
+        self.division =
+            Division::new(&lines, self.tip_division, cut, self.grid.cell_size, self.particles.spacing, reach);
+    }
+
+    /// The material of a particle.
+    pub(super) fn material(&self, particle: usize) -> &Elastic {
+        &self.materials[self.particles.material[particle] as usize]
+    }
+
+    /// Time that the fastest wave takes for a cell [s].
+    pub(super) fn crossing_time(&self) -> f64 {
+        let fastest = self.materials.iter().map(Elastic::dilatational_wave_speed).fold(0.0, f64::max);
+        self.grid.cell_size / fastest
+    }
+
+    /// How far ahead of a tip nodes are split, in cells.
+    pub(super) fn split_ahead(&self) -> f64 {
+        self.split_ahead
+    }
+
+    /// Whether ties hold the two sides of the nodes around a tip together.
+    pub(super) fn has_ties(&self) -> bool {
+        self.tip_division == TipDivision::PartlyCut
+    }
+
+    /// Whether uncut cells can go as rows.
+    pub(super) fn has_rows(&self) -> bool {
+        self.kernel == Kernel::Bilinear
+            && (self.grid.cell_size - 2.0 * self.particles.spacing).abs() < 1e-12 * self.grid.cell_size
+    }
+
+    /// How far a particle sees nodes along an axis, in cells.
+    pub(super) fn reach(&self) -> f64 {
+        0.5 * kernel::width(self.kernel) as f64
+    }
+
+    /// The weights of a place at the nodes around it.
+    pub(super) fn stencil(&self, place: Point) -> kernel::Stencil {
+        stencil(self.kernel, self.particles.spacing, &self.grid, place)
+    }
+
+    /// A reader of fields at particles.
+    pub(super) fn reader(&self) -> Reader<'_> {
+        Reader::new(self)
+    }
+
+    /// Number of fields.
+    pub(super) fn len(&self) -> usize {
+        self.layout.fields.len()
+    }
+
+    /// Where the node of a field is at rest [m].
+    pub(super) fn position(&self, field: usize) -> Point {
+        self.grid.position(self.layout.fields.node(field))
+    }
+
+    /// Where the node of each field is on the lattice.
+    pub(super) fn places_of_fields(&self) -> impl Iterator<Item = [i32; 2]> {
+        let further = self.grid.len()..self.len();
+        let own = self.grid.nodes().map(|(_, place)| place);
+        own.chain(further.map(|field| self.grid.place_of(self.layout.fields.node(field))))
+    }
+
+    /// Goes on with a layout that was checked.
+    pub(super) fn set_layout(&mut self, layout: Layout) {
+        self.layout = layout;
+        self.invert_masses();
+    }
+
+    /// The fields of a node that have mass, its own first.
+    pub(super) fn fields_with_mass(&self, node: usize) -> Vec<u32> {
+        let all = std::iter::once(node as u32).chain(self.layout.fields.of(node).iter().copied());
+        all.filter(|&field| self.layout.mass[field as usize] > 0.0).collect()
+    }
+
+    /// Makes what follows from the masses of the fields.
+    pub(super) fn invert_masses(&mut self) {
+        self.inverse_mass.clear();
+        self.inverse_mass.extend(self.layout.mass.iter().map(|&m| if m > 0.0 { 1.0 / m } else { 0.0 }));
+    }
+
+    /// Checks a layout that was read against this lattice, with so many `cracks`.
+    ///
+    /// # Errors
+    /// [`SimulationError::BadState`]
+    pub(super) fn check(&self, layout: &Layout, cracks: usize) -> Fits {
+        let fields = layout.fields.len();
+        layout.fields.check(self.grid.len(), cracks)?;
+        saved::ensure(layout.mass.len() == fields, "its number of fields")?;
+        saved::finite("a field", &layout.mass)?;
+        layout.cut.check(self.particles.len(), fields)?;
+        saved::ensure(layout.runs.len() == self.grid.rows(), "its number of rows")?;
+        for (index, runs) in layout.runs.iter().enumerate() {
+            let row = self.grid.row(index);
+            let above = self.grid.row_index(row.row + 1).map_or(0..0, |above| self.grid.row(above).nodes);
+            saved::ensure(runs.iter().all(|run| run.lies_in(&row.nodes, &above)), "a run of cells")?;
+        }
+        saved::below("a run of cells", layout.runs.iter().flatten().map(|run| run.material), self.materials.len())
+    }
+}
+
+fn stencil(kernel: Kernel, spacing: f64, grid: &Grid, place: Point) -> kernel::Stencil {
+    let x = grid.in_cells(place);
+    let half_size = 0.5 * spacing / grid.cell_size;
+    kernel::Stencil::new(kernel, half_size, [x.x, x.y], 1.0 / grid.cell_size)
+}

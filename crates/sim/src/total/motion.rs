@@ -1,0 +1,175 @@
+//! How the fields move: displacements at whole steps, velocities half a step ahead.
+
+use super::lattice::Lattice;
+use crate::particles::Particles;
+use crate::saved::{self, Fits};
+use fissure_plane::Vector;
+use fissure_scene::Scene;
+use serde::{Deserialize, Serialize};
+
+/// A vector at every field, x and y apart.
+pub(super) type FieldVectors = [Vec<f64>; 2];
+
+/// The motion of all fields.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Motion {
+    /// Displacement u [m].
+    pub(super) displacement: FieldVectors,
+    /// Velocity v at half steps [m/s].
+    pub(super) velocity: FieldVectors,
+    /// Velocities and displacements belong to the same moment: the next kick takes half a step, after which velocities
+    /// are half a step ahead. A whole kick here would more than double the amplitude of the shortest waves.
+    in_step: bool,
+    /// Length of the last step [s].
+    pub(super) last_step: f64,
+    /// Acceleration of the last step [m/s²].
+    #[serde(skip)]
+    pub(super) acceleration: FieldVectors,
+    /// Force of the last step [N/m].
+    #[serde(skip)]
+    pub(super) force: FieldVectors,
+}
+
+impl Motion {
+    /// So many fields at rest.
+    pub(super) fn at_rest(fields: usize) -> Self {
+        let zeros = || [vec![0.0; fields], vec![0.0; fields]];
+        Self {
+            displacement: zeros(),
+            velocity: zeros(),
+            in_step: true,
+            last_step: 0.0,
+            acceleration: zeros(),
+            force: zeros(),
+        }
+    }
+
+    /// The motion at time zero: that of the particles.
+    pub(super) fn initial(scene: &Scene, lattice: &Lattice) -> Self {
+        let mut motion = Self::at_rest(lattice.len());
+        motion.set_velocities(lattice, &lattice.particles, scene);
+        motion
+    }
+
+    fn set_velocities(&mut self, lattice: &Lattice, particles: &Particles, scene: &Scene) {
+        let mass = &lattice.layout.mass;
+        let mut momentum = [vec![0.0; mass.len()], vec![0.0; mass.len()]];
+        let mut any = false;
+        let mut reader = lattice.reader();
+        for (p, motion) in particles.first_motions(scene).into_iter().enumerate() {
+            let v = motion.velocity;
+            if v != Vector::zeros() {
+                any = true;
+                let m = particles.mass[p];
+                reader.for_each_entry(p, |field, w, _| {
+                    momentum[0][field] += m * w * v.x;
+                    momentum[1][field] += m * w * v.y;
+                });
+            }
+        }
+        if any {
+            for axis in 0..2 {
+                for (d, &m) in mass.iter().enumerate() {
+                    self.velocity[axis][d] = if m > 0.0 { momentum[axis][d] / m } else { 0.0 };
+                }
+            }
+        }
+    }
+
+    /// Checks a motion that was read against so many `fields`.
+    ///
+    /// # Errors
+    /// [`SimulationError::BadState`](crate::SimulationError::BadState)
+    pub(super) fn check(&self, fields: usize) -> Fits {
+        for values in self.displacement.iter().chain(&self.velocity) {
+            saved::ensure(values.len() == fields, "its number of fields")?;
+            saved::finite("a field", values)?;
+        }
+        saved::finite("its last step", [&self.last_step])
+    }
+
+    /// Makes room for new fields.
+    pub(super) fn resize(&mut self, fields: usize) {
+        let vectors = [&mut self.displacement, &mut self.velocity, &mut self.acceleration, &mut self.force];
+        for values in vectors.into_iter().flatten() {
+            values.resize(fields, 0.0);
+        }
+    }
+
+    /// Displacement of a field [m].
+    #[inline]
+    pub(super) fn displacement(&self, field: usize) -> Vector {
+        at(&self.displacement, field)
+    }
+
+    /// Velocity of a field [m/s].
+    #[inline]
+    pub(super) fn velocity(&self, field: usize) -> Vector {
+        at(&self.velocity, field)
+    }
+
+    /// Sets all velocities to zero.
+    pub(super) fn stop(&mut self) {
+        self.velocity.iter_mut().for_each(|v| v.fill(0.0));
+        self.acceleration.iter_mut().for_each(|a| a.fill(0.0));
+        self.last_step = 0.0;
+        self.in_step = true;
+    }
+
+    /// v += Δt f/m, with gravity, and with velocities that decay at the rate `damping` [1/s]. Returns the time that the
+    /// kick takes: a step, but half a step from rest. Keeps the velocities before it in place of the accelerations.
+    pub(super) fn kick(&mut self, inverse_mass: &[f64], gravity: Vector, damping: f64, time_step: f64) -> f64 {
+        let kick = if self.in_step { 0.5 * time_step } else { time_step };
+        self.in_step = false;
+        let decay = (-damping * kick).exp();
+        // Damped leapfrog v' = α v + β a is stable up to ω² Δt β = 2 (1 + α); this β keeps the limit where it is
+        // without damping.
+        let push = 0.5 * (1.0 + decay) * kick;
+        for axis in 0..2 {
+            let g = gravity[axis];
+            let (velocity, acceleration) = (&mut self.velocity[axis], &mut self.acceleration[axis]);
+            let force = &self.force[axis];
+            for d in 0..velocity.len() {
+                let before = velocity[d];
+                // Fields without mass have an inverse mass of zero and stay where they are.
+                let moving = if inverse_mass[d] > 0.0 { g } else { 0.0 };
+                velocity[d] = before * decay + push * (force[d] * inverse_mass[d] + moving);
+                acceleration[d] = before;
+            }
+        }
+        kick
+    }
+
+    /// Makes the accelerations of what all kicks of a step, `kick` [s] long, have made of the velocities before it.
+    pub(super) fn take_accelerations(&mut self, kick: f64) {
+        for axis in 0..2 {
+            let (velocity, acceleration) = (&self.velocity[axis], &mut self.acceleration[axis]);
+            for d in 0..velocity.len() {
+                acceleration[d] = (velocity[d] - acceleration[d]) / kick;
+            }
+        }
+    }
+
+    /// u += Δt v.
+    pub(super) fn drift(&mut self, time_step: f64) {
+        for axis in 0..2 {
+            let (velocity, displacement) = (&self.velocity[axis], &mut self.displacement[axis]);
+            for d in 0..velocity.len() {
+                displacement[d] += time_step * velocity[d];
+            }
+        }
+        self.last_step = time_step;
+    }
+
+    /// Work that gravity does at the present velocities, per time [W/m].
+    pub(super) fn power_of_gravity(&self, mass: &[f64], gravity: Vector) -> f64 {
+        let v = &self.velocity;
+        mass.iter().enumerate().map(|(d, m)| m * (gravity.x * v[0][d] + gravity.y * v[1][d])).sum()
+    }
+}
+
+/// The vector at a field.
+#[inline]
+pub(super) fn at(u: &FieldVectors, field: usize) -> Vector {
+    Vector::new(u[0][field], u[1][field])
+}

@@ -1,0 +1,96 @@
+//! What is read of the solver: particles, outlines and cracks as frames hold them, energies and momenta.
+
+use super::lattice::Lattice;
+use super::motion::Motion;
+use super::probes::{Faces, Probe, Probes};
+use super::ties::Ties;
+use crate::crack::Crack;
+use crate::crack::cracks::Cracks;
+use crate::faces::crack_frame::crack_frame;
+use fissure_plane::{Matrix, Point, Vector};
+use fissure_scene::{CrackFrame, OutlineFrame, ParticleFrame, Scene};
+
+/// The particles as a frame holds them, pieces left 0.
+pub(super) fn particle_frame(lattice: &Lattice, motion: &Motion) -> ParticleFrame {
+    let particles = &lattice.particles;
+    let n = particles.len();
+    let mut frame = ParticleFrame {
+        id: (0..n as u32).collect(),
+        body: particles.body.clone(),
+        piece: vec![0; n],
+        rest: particles.rest.clone(),
+        position: Vec::with_capacity(n),
+        velocity: Vec::with_capacity(n),
+        deformation_gradient: Vec::with_capacity(n),
+        cauchy_stress: Vec::with_capacity(n),
+    };
+    let mut reader = lattice.reader();
+    for p in 0..n {
+        let e = lattice.material(p);
+        let now = reader.motion(p, motion);
+        frame.position.push(particles.rest[p] + now.displacement);
+        frame.velocity.push(now.velocity);
+        frame.deformation_gradient.push(Matrix::identity() + now.strain);
+        frame.cauchy_stress.push(crate::cauchy_stress(&now.strain, e.mu, e.lambda));
+    }
+    frame
+}
+
+/// Of each particle: position [m], velocity [m/s], displacement gradient H = F − I [–].
+pub(super) fn places_and_motions(lattice: &Lattice, motion: &Motion) -> Vec<(Point, Vector, Matrix)> {
+    let mut reader = lattice.reader();
+    let mut of = |p: usize| {
+        let now = reader.motion(p, motion);
+        (lattice.particles.rest[p] + now.displacement, now.velocity, now.strain)
+    };
+    (0..lattice.particles.len()).map(&mut of).collect()
+}
+
+/// The rings of all bodies of `scene`.
+pub(super) fn outline_frames(scene: &Scene, probes: &Probes, motion: &Motion) -> Vec<OutlineFrame> {
+    let now = |probe: &Probe| (probe.moved(&motion.displacement), probe.value(&motion.velocity));
+    probes.outlines.frames(scene, now)
+}
+
+/// The cracks with both faces.
+pub(super) fn crack_frames(cracks: &Cracks, probes: &Probes, motion: &Motion) -> Vec<CrackFrame> {
+    let frame = |(index, (crack, faces)): (usize, (&Crack, &Faces))| {
+        let places = faces.each_ref().map(|face| face.iter().map(|p| p.moved(&motion.displacement)).collect());
+        let velocities = faces.each_ref().map(|face| face.iter().map(|p| p.value(&motion.velocity)).collect());
+        crack_frame(index, crack, places, velocities)
+    };
+    cracks.iter().zip(&probes.faces).enumerate().map(frame).collect()
+}
+
+/// Kinetic energy [J/m].
+pub(super) fn kinetic_energy(lattice: &Lattice, ties: &Ties, motion: &Motion) -> f64 {
+    let (mass, v) = (&lattice.layout.mass, &motion.velocity);
+    let twice: f64 = (0..mass.len()).map(|d| mass[d] * (v[0][d] * v[0][d] + v[1][d] * v[1][d])).sum();
+    0.5 * twice + ties.kinetic_energy(v)
+}
+
+/// Strain energy of the material and of the ties [J/m].
+pub(super) fn strain_energy(lattice: &Lattice, ties: &Ties, motion: &Motion) -> f64 {
+    let mut reader = lattice.reader();
+    (0..lattice.particles.len())
+        .map(|p| {
+            let e = lattice.material(p);
+            let h = reader.strain(p, &motion.displacement);
+            lattice.particles.volume[p] * crate::energy_density(&h, e.mu, e.lambda)
+        })
+        .sum::<f64>()
+        + ties.energy(&motion.displacement)
+}
+
+/// Linear [N s/m] and angular momentum about the origin [N s].
+pub(super) fn momenta(lattice: &Lattice, ties: &Ties, motion: &Motion) -> (Vector, f64) {
+    let (mut linear, mut angular) = (Vector::zeros(), 0.0);
+    for ((d, &mass), place) in lattice.layout.mass.iter().enumerate().zip(lattice.places_of_fields()) {
+        let place = lattice.grid.place(place).coords + motion.displacement(d);
+        let momentum = motion.velocity(d) * mass;
+        linear += momentum;
+        angular += place.perp(&momentum);
+    }
+    angular += ties.spin(&motion.displacement, &motion.velocity);
+    (linear, angular)
+}
