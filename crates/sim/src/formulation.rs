@@ -4,7 +4,7 @@ use crate::SimulationError;
 use crate::crack::cracks::Cracks;
 use crate::material::elastic::Elastic;
 use crate::particles::Particles;
-use crate::solver::{Handover, Solver};
+use crate::solver::{Continuation, Solver};
 use crate::total::Total;
 use crate::updated::Updated;
 use fissure_plane::bounds;
@@ -129,9 +129,9 @@ pub(crate) fn switch(
     scene: &Scene,
     particles: Arc<Particles>,
     cracks: &Cracks,
-    handover: Handover,
+    continuation: Continuation,
 ) -> Result<Box<dyn Solver>, SimulationError> {
-    Ok(Box::new(Updated::take_over(scene, particles, cracks, handover)?))
+    Ok(Box::new(Updated::continued(scene, particles, cracks, continuation)?))
 }
 
 /// Builds the solver with a saved state.

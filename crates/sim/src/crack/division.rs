@@ -87,7 +87,7 @@ pub(crate) struct Share {
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Tip {
+struct TipRay {
     position: Point,
     ahead: Vector,
 }
@@ -96,7 +96,7 @@ struct Tip {
 struct Line {
     crack: u32,
     segments: Vec<(Point, Point)>,
-    tips: Vec<Tip>,
+    tips: Vec<TipRay>,
     cut: TipCut,
     kinds: Vec<SegmentKind>,
     /// Segment of the crack that each prepared one is, or carries on.
@@ -262,7 +262,7 @@ impl Division {
 }
 
 /// Splits every share by one more crack.
-fn split(shares: Vec<Share>, crack: u32, cut: Cut) -> Vec<Share> {
+fn split(shares: Vec<Share>, crack: u32, cut: PairCut) -> Vec<Share> {
     let mut result = Vec::with_capacity(2 * shares.len());
     for share in shares {
         let mut far = share.clone();
@@ -292,7 +292,7 @@ fn prepare(line: &CrackLine, tip_division: TipDivision, cut: TipCut, cell_size: 
             LineEnd::Open(beyond) => (beyond, SegmentKind::Real),
             LineEnd::Junction { crack, beyond } => (beyond, SegmentKind::BeyondJunction(crack)),
             LineEnd::Tip if tip_division == TipDivision::PartlyCut => {
-                tips.push(Tip { position: from, ahead });
+                tips.push(TipRay { position: from, ahead });
                 ((WINDOW + 2.0) * cell_size, SegmentKind::AheadOfTip)
             }
             LineEnd::Tip => return None,
@@ -331,7 +331,7 @@ pub(crate) fn facing(first: &[(u32, Side)], second: &[(u32, Side)]) -> Option<(u
 
 /// How one crack divides a pair.
 #[derive(Debug, Clone, Copy)]
-struct Cut {
+struct PairCut {
     /// Side of the crack the particle is on.
     side: Side,
     /// Share of the far field, above 0 and up to 1.
@@ -372,7 +372,7 @@ fn divide(
     cell_size: f64,
     domain: f64,
     crossed: &[u32],
-) -> Option<Cut> {
+) -> Option<PairCut> {
     let mut net = NetCrossing::default();
     let mut crosses_real = false;
     for &(_, segment) in segments {
@@ -403,14 +403,14 @@ fn divide(
         }
         // A domain of no size asks for the side, not for a share.
         if domain > 0.0 && !line.cut.shares {
-            return Some(Cut { side, fraction: 1.0, gradient: Vector::zeros() });
+            return Some(PairCut { side, fraction: 1.0, gradient: Vector::zeros() });
         }
         let (fraction, slope) = ramp(behind, domain);
         if fraction == 0.0 {
             return None;
         }
         let gradient = -tip.ahead * slope;
-        return Some(Cut { side, fraction, gradient });
+        return Some(PairCut { side, fraction, gradient });
     }
-    crosses_real.then_some(Cut { side, fraction: 1.0, gradient: Vector::zeros() })
+    crosses_real.then_some(PairCut { side, fraction: 1.0, gradient: Vector::zeros() })
 }

@@ -6,10 +6,10 @@ use crate::particles::Particles;
 use fissure_scene::{CrackEnd, End, TipDivision};
 use std::collections::HashMap;
 
-/// Splits the fragments in `pieces` (one number per particle) where the cracks, at rest, have cut neighbours apart. A
+/// Splits the fragments in `numbers` (one number per particle) where the cracks, at rest, have cut neighbours apart. A
 /// fragment that splits keeps its number for the part with the first particle; the others get the next free numbers, in
 /// the order of their first particles.
-pub(crate) fn split(particles: &Particles, cracks: &[Crack], cell_size: f64, pieces: &mut [u32]) {
+pub(crate) fn split(particles: &Particles, cracks: &[Crack], cell_size: f64, numbers: &mut [u32]) {
     let s = particles.spacing;
     // Neighbours are one spacing apart; an open end goes so far on that no pair slips past it.
     let lines: Vec<CrackLine> = cracks
@@ -49,12 +49,12 @@ pub(crate) fn split(particles: &Particles, cracks: &[Crack], cell_size: f64, pie
             }
         }
     }
-    let mut next = pieces.iter().max().map_or(0, |&m| m + 1);
+    let mut next = numbers.iter().max().map_or(0, |&m| m + 1);
     let mut number: HashMap<(u32, usize), u32> = HashMap::new();
     let mut kept: HashMap<u32, usize> = HashMap::new();
     for p in 0..particles.len() {
         let group = root(&mut parent, p);
-        let old = pieces[p];
+        let old = numbers[p];
         let new = *number.entry((old, group)).or_insert_with(|| {
             if *kept.entry(old).or_insert(group) == group {
                 old
@@ -63,7 +63,7 @@ pub(crate) fn split(particles: &Particles, cracks: &[Crack], cell_size: f64, pie
                 next - 1
             }
         });
-        pieces[p] = new;
+        numbers[p] = new;
     }
 }
 

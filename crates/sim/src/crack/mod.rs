@@ -50,7 +50,7 @@ pub(crate) struct Tip {
     /// What [`Tip::run`] was at the last frame [m].
     pub(crate) run_at_frame: f64,
     /// What was measured last.
-    pub(crate) measured: Measured,
+    pub(crate) assessment: Assessment,
     /// Where the increment ends that the tip is on its way through; none between increments.
     pub(crate) target: Option<Point>,
     /// Energy that the tip has taken out of the body beyond the cost of its growth [J/m], never negative. It pays for
@@ -73,7 +73,7 @@ impl Tip {
             steps_to_look: 0,
             grown: 0.0,
             run_at_frame: 0.0,
-            measured: Measured::default(),
+            assessment: Assessment::default(),
             target: None,
             balance: f64::INFINITY,
             heading: Vector::zeros(),
@@ -93,7 +93,7 @@ impl Tip {
     /// # Errors
     /// [`SimulationError::BadState`]
     fn check(&self) -> Fits {
-        let m = &self.measured;
+        let m = &self.assessment;
         let what = "a tip";
         saved::finite(what, [&self.ahead_of_limit, &self.grown, &self.run_at_frame])?;
         saved::finite(what, [&m.j_integral, &m.mode_1, &m.mode_2, &m.kink_angle, &m.equivalent, &m.released])?;
@@ -105,7 +105,7 @@ impl Tip {
     }
 
     /// Counts growth by `length` [m].
-    pub(crate) fn take_up(&mut self, length: f64) {
+    pub(crate) fn add_grown(&mut self, length: f64) {
         self.grown += length;
         self.since_division += length;
         self.ahead_of_limit += length;
@@ -118,7 +118,7 @@ impl Tip {
 
 /// What was measured at a tip last. Symbols and units as in [`TipRecord`].
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Measured {
+pub(crate) struct Assessment {
     pub(crate) j_integral: f64,
     pub(crate) mode_1: f64,
     pub(crate) mode_2: f64,
@@ -334,7 +334,7 @@ impl Crack {
     /// time since the last frame.
     pub(crate) fn record(&self, id: TipId, position: Point, direction: f64, interval: f64) -> Option<TipRecord> {
         let tip = self.tip(id.end)?;
-        let m = tip.measured;
+        let m = tip.assessment;
         let speed = if interval > 0.0 { (tip.run() - tip.run_at_frame) / interval } else { 0.0 };
         Some(TipRecord {
             crack: id.crack as u32,

@@ -3,12 +3,13 @@
 //! A tip that is given enough energy for two may divide: when J reaches a multiple of G_c = K_c²/E'. Where real cracks do so depends on the process zone,
 //! which a sharp crack does not have; so the multiple, the angle and the distance are the scene's.
 
-use super::heading::turned;
-use super::obstacle::first_obstacle;
-use super::{LAST_LIGAMENT, way};
-use crate::crack::Measured;
+use super::advance::LAST_LIGAMENT;
+use super::barrier::first_barrier;
+use super::heading::way;
+use crate::crack::Assessment;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::material::elastic::Elastic;
+use crate::tip::frame::turned;
 use fissure_scene::{Point, Scene};
 
 /// Length of new branches, in cells. At the default angle their tips are then 3.6 cells apart: each has the smallest radius of an integral for itself.
@@ -19,7 +20,7 @@ const FIRST_LENGTH: f64 = 4.0;
 pub(crate) fn branches(
     cracks: &Cracks,
     id: TipId,
-    measured: &Measured,
+    assessed: &Assessment,
     scene: &Scene,
     elastic: &[Elastic],
 ) -> Option<[Vec<Point>; 2]> {
@@ -28,19 +29,19 @@ pub(crate) fn branches(
     let from = cracks.position(id);
     let body = &scene.bodies[cracks.of(id).body as usize];
     let modulus = elastic[body.material_at(from)].effective_modulus;
-    let enough = branching.release_ratio * measured.fracture_toughness * measured.fracture_toughness / modulus;
+    let enough = branching.release_ratio * assessed.fracture_toughness * assessed.fracture_toughness / modulus;
     let follows_exactly = tip.guide.as_ref().is_some_and(|g| g.strength() >= 1.0);
-    if follows_exactly || measured.j_integral < enough || tip.since_division < branching.spacing {
+    if follows_exactly || assessed.j_integral < enough || tip.since_division < branching.spacing {
         return None;
     }
-    let toward = way(cracks, id, measured, scene);
+    let toward = way(cracks, id, assessed, scene);
     let h = scene.cell_size;
     let step = scene.growth.increment * h;
     let count = (FIRST_LENGTH * h / step).ceil() as usize;
     let branch = |angle: f64| {
         let along = turned(toward, angle);
         let clear = from + along * (count as f64 * step + LAST_LIGAMENT * h);
-        first_obstacle(cracks, id, &body.region, from, clear)
+        first_barrier(cracks, id, &body.region, from, clear)
             .is_none()
             .then(|| (1..=count).map(|k| from + along * (step * k as f64)).collect::<Vec<Point>>())
     };

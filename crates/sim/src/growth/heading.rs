@@ -1,8 +1,9 @@
 //! Where a tip wants to go: by the stress, by a drawn path, or by both.
 
 use crate::crack::cracks::{Cracks, TipId};
-use crate::crack::{DIRECTION_LENGTH, Measured};
+use crate::crack::{Assessment, DIRECTION_LENGTH};
 use crate::material::elastic::Elastic;
+use crate::tip::frame::turned;
 use crate::tip::gauge::KINK;
 use fissure_scene::{End, Scene, TipState, Vector};
 
@@ -10,14 +11,8 @@ use fissure_scene::{End, Scene, TipState, Vector};
 const HEADING_CELLS: f64 = 2.0;
 
 /// The direction that the stress asks for now: unit vector, at rest.
-fn asked(cracks: &Cracks, id: TipId, measured: &Measured, scene: &Scene) -> Vector {
-    turned(cracks.ahead(id, DIRECTION_LENGTH * scene.cell_size), measured.kink_angle)
-}
-
-/// `vector` turned counter-clockwise by `angle` [rad].
-pub(super) fn turned(vector: Vector, angle: f64) -> Vector {
-    let (sine, cosine) = angle.sin_cos();
-    Vector::new(cosine * vector.x - sine * vector.y, sine * vector.x + cosine * vector.y)
+fn asked(cracks: &Cracks, id: TipId, assessed: &Assessment, scene: &Scene) -> Vector {
+    turned(cracks.ahead(id, DIRECTION_LENGTH * scene.cell_size), assessed.kink_angle)
 }
 
 /// The heading of a tip after one more measurement, `time_step` [s] after the last one.
@@ -27,12 +22,12 @@ pub(super) fn turned(vector: Vector, angle: f64) -> Vector {
 pub(crate) fn heading(
     cracks: &Cracks,
     id: TipId,
-    measured: &Measured,
+    assessed: &Assessment,
     scene: &Scene,
     elastic: &[Elastic],
     time_step: f64,
 ) -> Vector {
-    let now = asked(cracks, id, measured, scene);
+    let now = asked(cracks, id, assessed, scene);
     let Some(tip) = cracks.tip(id) else { return now };
     if tip.state != TipState::Growing || tip.heading == Vector::zeros() {
         return now;
@@ -71,14 +66,14 @@ fn after_kink(cracks: &Cracks, id: TipId, over: f64) -> Option<Vector> {
 }
 
 /// The direction a tip would take without a guide (unit vector, at rest).
-pub(super) fn physical_way(cracks: &Cracks, id: TipId, measured: &Measured, scene: &Scene) -> Vector {
+pub(super) fn physical_way(cracks: &Cracks, id: TipId, assessed: &Assessment, scene: &Scene) -> Vector {
     let tip = cracks.tip(id);
-    tip.and_then(|t| t.heading.try_normalize(0.0)).unwrap_or_else(|| asked(cracks, id, measured, scene))
+    tip.and_then(|t| t.heading.try_normalize(0.0)).unwrap_or_else(|| asked(cracks, id, assessed, scene))
 }
 
 /// The direction a tip takes (unit vector, at rest): its heading, turned to what is weak, then towards its guide by the strength of the guide.
-pub(super) fn way(cracks: &Cracks, id: TipId, measured: &Measured, scene: &Scene) -> Vector {
-    let physical = super::seeking::seek(cracks, id, physical_way(cracks, id, measured, scene), scene);
+pub(super) fn way(cracks: &Cracks, id: TipId, assessed: &Assessment, scene: &Scene) -> Vector {
+    let physical = super::seeking::seek(cracks, id, physical_way(cracks, id, assessed, scene), scene);
     let Some(guide) = cracks.tip(id).and_then(|t| t.guide.as_ref()) else { return physical };
     match guide.drawn_direction(cracks.position(id), DIRECTION_LENGTH * scene.cell_size) {
         Some(drawn) => turned(physical, guide.strength() * physical.perp(&drawn).atan2(physical.dot(&drawn))),

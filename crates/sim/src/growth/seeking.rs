@@ -1,8 +1,9 @@
 //! Cracks seek what is weak: where toughness varies, a tip takes the direction in which it has the most for what it costs.
 
-use super::criterion::share_beside;
+use super::criterion::criterion;
 use crate::crack::Crack;
 use crate::crack::cracks::{Cracks, TipId};
+use crate::tip::frame::turned;
 use fissure_scene::{Point, Scene, Vector};
 
 /// Directions are looked at up to this many steps to either side of the one the stress asks for ...
@@ -18,7 +19,7 @@ pub(super) fn is_varied(crack: &Crack, scene: &Scene) -> bool {
 }
 
 /// Fracture toughness at a place at rest [Pa·√m]: of the material there, as strong as the scene makes it.
-pub(crate) fn toughness_at(crack: &Crack, place: Point, scene: &Scene) -> f64 {
+pub(super) fn toughness_at(crack: &Crack, place: Point, scene: &Scene) -> f64 {
     let body = &scene.bodies[crack.body as usize];
     scene.materials[body.material_at(place)].fracture_toughness * scene.toughness_factor(crack.body as usize, place)
 }
@@ -32,10 +33,11 @@ pub(super) fn seek(cracks: &Cracks, id: TipId, physical: Vector, scene: &Scene) 
         return physical;
     }
     let from = cracks.position(id);
+    let criterion = criterion();
     let ratio = |angle: f64| {
-        let along = super::heading::turned(physical, angle) * (REACH * scene.cell_size);
+        let along = turned(physical, angle) * (REACH * scene.cell_size);
         let toughness = toughness_at(crack, from + 0.5 * along, scene) + toughness_at(crack, from + along, scene);
-        share_beside(angle) / toughness
+        criterion.share_beside(angle) / toughness
     };
     let mut best = (ratio(0.0), 0.0);
     for step in 1..=STEPS {
@@ -47,5 +49,5 @@ pub(super) fn seek(cracks: &Cracks, id: TipId, physical: Vector, scene: &Scene) 
             }
         }
     }
-    super::heading::turned(physical, best.1)
+    turned(physical, best.1)
 }

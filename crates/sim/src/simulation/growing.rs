@@ -3,7 +3,7 @@
 use super::Simulation;
 use crate::SimulationError;
 use crate::crack::cracks::TipId;
-use crate::crack::{Crack, Measured, Tip};
+use crate::crack::{Assessment, Crack, Tip};
 use crate::growth::{self, Advance, Cost};
 use crate::solver::Observed;
 use crate::tip::gauge::Gauge;
@@ -47,22 +47,22 @@ impl Simulation {
             !wait
         });
         let cracks = &state.cracks;
-        let mut measured: Vec<Measured> = Vec::with_capacity(live.len());
+        let mut assessed: Vec<Assessment> = Vec::with_capacity(live.len());
         let mut observe = |moment: &dyn Observed| {
             for &id in &live {
-                measured.push(growth::judge(&gauge.measure(moment, cracks, id), scene));
+                assessed.push(growth::assess(&gauge.read(moment, cracks, id), scene));
             }
         };
         solver.step(cracks, state.time, time_step, &mut observe)?;
         state.steps += 1;
-        for (&id, m) in live.iter().zip(&mut measured) {
+        for (&id, m) in live.iter().zip(&mut assessed) {
             let heading = growth::heading(&state.cracks, id, m, scene, elastic, time_step);
             if let Some(tip) = state.cracks.tip_mut(id) {
                 tip.heading = heading;
             }
             m.fracture_toughness = growth::toughness_ahead(&state.cracks, id, m, scene);
             if let Some(tip) = state.cracks.tip_mut(id) {
-                tip.measured = *m;
+                tip.assessment = *m;
                 let is_far = m.equivalent < FAR_FROM_GROWTH * m.fracture_toughness;
                 let has_schedule = tip.guide.as_ref().is_some_and(|g| g.due(0.0, 0.0).is_some());
                 if tip.state != TipState::Growing && is_far && !has_schedule {
@@ -71,7 +71,7 @@ impl Simulation {
             }
         }
         let time = state.time + time_step;
-        for (&id, &m) in live.iter().zip(&measured) {
+        for (&id, &m) in live.iter().zip(&assessed) {
             self.pay_drag(id);
             self.grow(id, m, time, time_step);
         }
@@ -80,7 +80,8 @@ impl Simulation {
 
     /// What drag has taken counts as taken by the tip.
     fn pay_drag(&mut self, id: TipId) {
-        let energy = self.solver.take_drag(id);
+        let Some(sliding) = self.solver.sliding_mut() else { return };
+        let energy = sliding.take_drag(id);
         self.state.crack_energy += energy;
         if let Some(tip) = self.state.cracks.tip_mut(id) {
             tip.balance += energy;
@@ -88,49 +89,54 @@ impl Simulation {
     }
 
     /// Lets one tip grow as far as the energy balance and the speed limit allow within a step that ends at `time`.
-    fn grow(&mut self, id: TipId, first: Measured, time: f64, time_step: f64) {
+    fn grow(&mut self, id: TipId, first: Assessment, time: f64, time_step: f64) {
         let may_run = growth::speed_limit(&self.state.cracks, id, &self.scene, &self.elastic, time) * time_step;
         if let Some(tip) = self.state.cracks.tip_mut(id) {
             // A tip that waits may save up the way of one step and no more; it shall not leap later.
             tip.ahead_of_limit = (tip.ahead_of_limit - may_run).max(-may_run);
         }
-        let mut measured = first;
+        let mut assessed = first;
         for increment in 0..MOST_INCREMENTS_PER_STEP {
             let cracks = &self.state.cracks;
             let Some(tip) = cracks.tip(id) else { return };
             let held = may_run <= 0.0 || tip.ahead_of_limit > 0.0;
-            if held || !growth::wants_to_grow(cracks, id, &measured, &self.scene, time, self.solver.slides()) {
+            if held || !growth::wants_to_grow(cracks, id, &assessed, &self.scene, time, self.solver.sliding().is_some())
+            {
                 if increment == 0 {
                     self.rest(id, held);
                 }
                 return;
             }
             if tip.target.is_none() {
-                if let Some(branches) = growth::branches(cracks, id, &measured, &self.scene, &self.elastic) {
-                    self.divide(id, branches, &measured);
+                if let Some(branches) = growth::branches(cracks, id, &assessed, &self.scene, &self.elastic) {
+                    self.divide(id, branches, &assessed);
                     return;
                 }
-                let Some(advance) = growth::advance(cracks, id, &measured, &self.scene, time) else { return };
-                self.begin_increment(id, &advance, &measured);
+                let Some(advance) = growth::next_increment(cracks, id, &assessed, &self.scene, time) else { return };
+                self.begin_increment(id, &advance, &assessed);
                 if self.state.cracks.end(id) != CrackEnd::Tip {
                     return;
                 }
             }
-            if !self.slide(id, &measured, time) {
+            if !self.slide(id, &assessed, time) {
                 if increment == 0 {
                     self.rest(id, false);
                 }
                 return;
             }
-            measured = self.measure(id);
+            assessed = self.assess(id);
         }
     }
 
     /// Sets a tip on its way through an increment, or at its end where tips only jump or the increment is not like others.
-    fn begin_increment(&mut self, id: TipId, advance: &Advance, measured: &Measured) {
+    fn begin_increment(&mut self, id: TipId, advance: &Advance, assessed: &Assessment) {
         let from = self.state.cracks.position(id);
         match advance.points[..] {
-            [target] if self.solver.slides() && advance.end == CrackEnd::Tip && advance.state == TipState::Growing => {
+            [target]
+                if self.solver.sliding().is_some()
+                    && advance.end == CrackEnd::Tip
+                    && advance.state == TipState::Growing =>
+            {
                 self.add_points(id, &[from + (target - from) * FIRST_PART], TipState::Growing);
                 if let Some(tip) = self.state.cracks.tip_mut(id) {
                     tip.target = Some(target);
@@ -138,7 +144,7 @@ impl Simulation {
             }
             _ => {
                 let length = self.add_points(id, &advance.points, advance.state);
-                self.state.crack_energy += measured.released.max(0.0) * length;
+                self.state.crack_energy += assessed.released.max(0.0) * length;
             }
         }
         self.state.cracks.set_end(id, advance.end);
@@ -150,20 +156,21 @@ impl Simulation {
     /// Lets a tip run through its increment as far as it can pay. Whether it has come to the end of it.
     ///
     /// What the tip takes out of the body on the way is what the way costs: the energy balance holds over every stretch, not only at the moment when growth begins.
-    fn slide(&mut self, id: TipId, measured: &Measured, time: f64) -> bool {
+    fn slide(&mut self, id: TipId, assessed: &Assessment, time: f64) -> bool {
         let cracks = &self.state.cracks;
         let Some(tip) = cracks.tip(id) else { return false };
         let Some(target) = tip.target else { return true };
         let from = cracks.position(id);
         let left = (target - from).norm();
-        let (cost, most) = match growth::cost(cracks, id, measured, &self.scene, time) {
+        let (cost, most) = match growth::cost(cracks, id, assessed, &self.scene, time) {
             Cost::Scheduled(due) => (0.0, due),
             Cost::Energy(cost) => (cost, f64::INFINITY),
         };
         let most = most.min(left).min(-tip.ahead_of_limit);
         let slack = BALANCE_CELLS * self.scene.cell_size * cost;
         let balance = tip.balance.min(slack);
-        let release = self.solver.release(cracks, id);
+        let Some(sliding) = self.solver.sliding() else { return true };
+        let release = sliding.release(cracks, id);
         let distance = affordable(most, |distance| balance + release(distance) - cost * distance);
         let arrives = distance >= left;
         if !arrives && distance < LEAST_SLIDE * self.scene.cell_size {
@@ -173,14 +180,16 @@ impl Simulation {
         let to = if arrives { target } else { from + (target - from) * (distance / left) };
         self.state.cracks.slide(id, to);
         if let Some(tip) = self.state.cracks.tip_mut(id) {
-            tip.take_up(distance);
+            tip.add_grown(distance);
             tip.balance = (balance + taken - cost * distance).max(0.0);
             if arrives {
                 tip.target = None;
             }
         }
         self.state.crack_energy += taken;
-        self.solver.slide(&self.state.cracks, id);
+        if let Some(sliding) = self.solver.sliding_mut() {
+            sliding.slide(&self.state.cracks, id);
+        }
         arrives
     }
 
@@ -203,22 +212,22 @@ impl Simulation {
         let length = cracks.of(id).length() - before;
         if let Some(tip) = cracks.tip_mut(id) {
             tip.state = state;
-            tip.take_up(length);
+            tip.add_grown(length);
         }
         length
     }
 
     /// Divides a tip: it goes on along the left branch, a new crack that begins at it along the right one.
-    fn divide(&mut self, id: TipId, branches: [Vec<Point>; 2], measured: &Measured) {
+    fn divide(&mut self, id: TipId, branches: [Vec<Point>; 2], assessed: &Assessment) {
         let from = self.state.cracks.position(id);
         let [left, right] = branches;
         // The first length of both together releases what one straight on would have.
         let length = self.add_points(id, &left, TipState::Growing);
-        self.state.crack_energy += measured.released.max(0.0) * length;
+        self.state.crack_energy += assessed.released.max(0.0) * length;
         let mut points = vec![from];
         points.extend(right);
         let mut twin = Tip::new(None);
-        twin.take_up(points.windows(2).map(|w| (w[1] - w[0]).norm()).sum());
+        twin.add_grown(points.windows(2).map(|w| (w[1] - w[0]).norm()).sum());
         if let Some(tip) = self.state.cracks.tip_mut(id) {
             tip.since_division = 0.0;
             // Each branch goes its own way from here.
@@ -233,20 +242,20 @@ impl Simulation {
     }
 
     /// Measures a tip between steps.
-    fn measure(&self, id: TipId) -> Measured {
+    fn assess(&self, id: TipId) -> Assessment {
         let gauge = Gauge { scene: &self.scene, elastic: &self.elastic };
         let cracks = &self.state.cracks;
-        let mut measured = growth::judge(&gauge.measure(self.solver.observed(), cracks, id), &self.scene);
-        measured.fracture_toughness = growth::toughness_ahead(cracks, id, &measured, &self.scene);
-        measured
+        let mut assessed = growth::assess(&gauge.read(&*self.solver, cracks, id), &self.scene);
+        assessed.fracture_toughness = growth::toughness_ahead(cracks, id, &assessed, &self.scene);
+        assessed
     }
 
     /// Measures every live tip now.
     pub fn measure_all(&mut self) {
         for id in self.state.cracks.live() {
-            let m = self.measure(id);
+            let m = self.assess(id);
             if let Some(tip) = self.state.cracks.tip_mut(id) {
-                tip.measured = m;
+                tip.assessment = m;
             }
         }
     }

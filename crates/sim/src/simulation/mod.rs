@@ -5,7 +5,7 @@ use crate::crack::{Crack, fragments};
 use crate::formulation::{self, Choice};
 use crate::material::elastic::Elastic;
 use crate::particles::Particles;
-use crate::solver::Solver;
+use crate::solver::{Observed, Solver};
 use crate::{SimulationError, foresight, memory, saved};
 use fissure_scene::{Energies, Formulation, Frame, Pose, Scene, TipRecord, Vector};
 use serde::{Deserialize, Serialize};
@@ -29,14 +29,14 @@ pub struct Simulation {
     solver: Box<dyn Solver>,
     particles: Arc<Particles>,
     formulation: Formulation,
-    state: State,
+    state: RunState,
     /// Largest stable time step at the last look [s].
     stable_time_step: f64,
 }
 
 /// What a saved state holds besides the solver's own.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-struct State {
+struct RunState {
     frame_number: i64,
     time: f64,
     steps: u64,
@@ -50,10 +50,10 @@ struct State {
     /// Time between the last two frames [s].
     interval: f64,
     /// Fragment of each particle.
-    pieces: Vec<u32>,
+    fragments: Vec<u32>,
 }
 
-impl State {
+impl RunState {
     /// Checks a state that was read against its scene, which has so many `particles`.
     ///
     /// # Errors
@@ -64,9 +64,9 @@ impl State {
         let is_a_frame = frames.contains(&self.frame_number) && self.time == scene.frames.time(self.frame_number);
         saved::ensure(is_a_frame, "its frame")?;
         saved::finite("its energy", [&self.crack_energy, &self.first_energy, &self.most_work, &self.interval])?;
-        saved::ensure(self.pieces.len() == particles, "its number of particles")?;
+        saved::ensure(self.fragments.len() == particles, "its number of particles")?;
         // Fragments only split, each into ones with particles of their own.
-        saved::below("a particle", self.pieces.iter().copied(), particles)?;
+        saved::below("a particle", self.fragments.iter().copied(), particles)?;
         saved::ensure(self.cracks.len() >= scene.cracks.len(), "its number of cracks")?;
         self.cracks.iter().try_for_each(|crack| crack.check(scene, self.cracks.len()))
     }
@@ -77,7 +77,7 @@ struct Saved {
     version: String,
     scene_hash: String,
     formulation: Formulation,
-    state: State,
+    state: RunState,
     solver: Vec<u8>,
 }
 
@@ -135,7 +135,7 @@ impl Simulation {
             elastic,
             solver,
             formulation,
-            state: State {
+            state: RunState {
                 frame_number: scene.frames.first,
                 time: 0.0,
                 steps: 0,
@@ -144,12 +144,12 @@ impl Simulation {
                 first_energy: 0.0,
                 most_work: 0.0,
                 interval: 0.0,
-                pieces: fragments::of_bodies(&particles),
+                fragments: fragments::of_bodies(&particles),
             },
             particles,
             stable_time_step: 0.0,
         };
-        simulation.split_pieces();
+        simulation.split_fragments();
         let energies = simulation.solver.energies();
         simulation.state.first_energy = energies.kinetic + energies.strain;
         simulation.stable_time_step = simulation.solver.stable_time_step();
@@ -262,7 +262,7 @@ impl Simulation {
 
     /// What was measured last at each tip that is or was live, as in a frame.
     pub fn tips(&self) -> Vec<TipRecord> {
-        let observed = self.solver.observed();
+        let observed: &dyn Observed = &*self.solver;
         let cracks = &self.state.cracks;
         let mut tips = Vec::new();
         for id in cracks.ids().filter(|&id| cracks.tip(id).is_some()) {
@@ -292,7 +292,7 @@ impl Simulation {
     /// The current state as a frame.
     pub fn frame(&self) -> Frame {
         let mut particles = self.solver.particle_frame();
-        particles.piece.clone_from(&self.state.pieces);
+        particles.piece.clone_from(&self.state.fragments);
         Frame {
             number: self.state.frame_number,
             time: self.state.time,
@@ -340,7 +340,7 @@ impl Simulation {
         }
         self.watch_energy().map_err(|error| self.name_cause(error))?;
         self.state.frame_number += 1;
-        self.split_pieces();
+        self.split_fragments();
         Ok(true)
     }
 
@@ -396,8 +396,8 @@ impl Simulation {
         rises || change < 1.0 - LIMIT_SLACK || change.is_nan()
     }
 
-    fn split_pieces(&mut self) {
-        fragments::split(&self.particles, &self.state.cracks, self.scene.cell_size, &mut self.state.pieces);
+    fn split_fragments(&mut self) {
+        fragments::split(&self.particles, &self.state.cracks, self.scene.cell_size, &mut self.state.fragments);
     }
 
     /// The whole state at a frame boundary, for [`Simulation::restore`].

@@ -14,9 +14,9 @@ impl Simulation {
         if !out_of_range || self.scene.solver.on_distortion != OnDistortion::Switch {
             return Err(error);
         }
-        let Some(handover) = self.solver.hand_over(&self.state.cracks) else { return Err(error) };
+        let Some(continuation) = self.solver.continuation(&self.state.cracks) else { return Err(error) };
         self.scene = formulation::settle(&self.scene, Formulation::Updated);
-        self.solver = formulation::switch(&self.scene, self.particles.clone(), &self.state.cracks, handover)?;
+        self.solver = formulation::switch(&self.scene, self.particles.clone(), &self.state.cracks, continuation)?;
         self.formulation = Formulation::Updated;
         Ok(())
     }

@@ -17,6 +17,12 @@ pub(crate) fn turn(cosine: f64, sine: f64) -> (Matrix, Matrix) {
     (Matrix::new(c, -s, s, c), Matrix::new(c_minus_one, -s, s, c_minus_one))
 }
 
+/// `vector` turned counter-clockwise by `angle` [rad].
+pub(crate) fn turned(vector: Vector, angle: f64) -> Vector {
+    let (sine, cosine) = angle.sin_cos();
+    Vector::new(cosine * vector.x - sine * vector.y, sine * vector.x + cosine * vector.y)
+}
+
 /// One end of a crack of which the points are at `points` now, and the direction ahead of it (unit vector); that at
 /// rest where they all coincide.
 pub(crate) fn tip_of(cracks: &Cracks, id: TipId, points: &[Point], cell_size: f64) -> (Point, Vector) {

@@ -25,7 +25,7 @@ const WIDE_RADIUS: f64 = 6.0;
 /// longer that of one direction. Growth in quarter cells along a smooth path turns by less.
 pub(crate) const KINK: f64 = 0.26;
 
-/// What the integrals around a tip give. What it means for growth is said by [`crate::growth::judge`].
+/// What the integrals around a tip give. What it means for growth is said by [`crate::growth::assess`].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Reading {
     /// J along the crack [J/m²].
@@ -52,7 +52,7 @@ pub(crate) struct Gauge<'a> {
 
 impl Gauge<'_> {
     /// Measures one tip.
-    pub(crate) fn measure(&self, solver: &dyn Observed, cracks: &Cracks, id: TipId) -> Reading {
+    pub(crate) fn read(&self, moment: &dyn Observed, cracks: &Cracks, id: TipId) -> Reading {
         let settings = &self.scene.solver;
         let h = self.scene.cell_size;
         let (radius, radius_shrunk) = match settings.j_method {
@@ -65,7 +65,7 @@ impl Gauge<'_> {
         };
         // The contour takes kernel averages around its points.
         let reach = if settings.j_method == JMethod::Contour { radius + 2.0 * h } else { radius };
-        let mut zone = solver.tip_zone(cracks, id, reach);
+        let mut zone = moment.tip_zone(cracks, id, reach);
         zone.center_on_crack(h);
         zone.take_off_mean_velocity();
         let Some(nearest) = zone.points.iter().min_by(|a, b| a.place.norm_squared().total_cmp(&b.place.norm_squared()))

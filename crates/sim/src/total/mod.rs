@@ -36,7 +36,7 @@ use crate::SimulationError;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::particles::Particles;
 use crate::saved;
-use crate::solver::{Handover, Observed, Release, Solver, SolverEnergies};
+use crate::solver::{Continuation, Observed, Release, SlidingTips, Snapshot, Solver, SolverEnergies};
 use crate::tip::zone::TipZone;
 use colliders::Colliders;
 use contact::Contacts;
@@ -206,6 +206,10 @@ impl Solver for Total {
         stability::largest_time_step(&self.lattice)
     }
 
+    fn moving_time_step(&self) -> Option<f64> {
+        None
+    }
+
     fn step(
         &mut self,
         cracks: &Cracks,
@@ -260,21 +264,12 @@ impl Solver for Total {
         self.ties.refresh(&near, &self.lattice, &self.motion, cracks);
     }
 
-    fn slides(&self) -> bool {
-        self.lattice.has_ties()
+    fn sliding(&self) -> Option<&dyn SlidingTips> {
+        self.lattice.has_ties().then_some(self as &dyn SlidingTips)
     }
 
-    fn release(&self, cracks: &Cracks, id: TipId) -> Release {
-        self.ties.release(&self.lattice, &self.motion, cracks, id)
-    }
-
-    fn take_drag(&mut self, id: TipId) -> f64 {
-        self.ties.take_drag(id)
-    }
-
-    fn slide(&mut self, cracks: &Cracks, id: TipId) {
-        self.ties.soften(&self.lattice, cracks, id);
-        self.probes.move_last_faces(&self.lattice, cracks, id);
+    fn sliding_mut(&mut self) -> Option<&mut dyn SlidingTips> {
+        self.lattice.has_ties().then_some(self as &mut dyn SlidingTips)
     }
 
     fn stop(&mut self) {
@@ -284,40 +279,9 @@ impl Solver for Total {
     fn set_damping(&mut self, rate: f64) {
         self.damping = rate;
     }
+}
 
-    fn rayleigh_quotient(&self) -> Option<f64> {
-        stability::rayleigh_quotient(&self.lattice, &self.ties, &self.motion)
-    }
-
-    fn observed(&self) -> &dyn Observed {
-        self
-    }
-
-    fn hand_over(&mut self, cracks: &Cracks) -> Option<Handover> {
-        Some(Handover {
-            particles: snapshot::places_and_motions(&self.lattice, &self.motion),
-            cracks: self.crack_frames(cracks),
-            outlines: self.outline_frames(),
-            external_work: self.external_work,
-        })
-    }
-
-    fn kinetic_energy(&self) -> f64 {
-        snapshot::kinetic_energy(&self.lattice, &self.ties, &self.motion)
-    }
-
-    fn momenta(&self) -> (Vector, f64) {
-        snapshot::momenta(&self.lattice, &self.ties, &self.motion)
-    }
-
-    fn energies(&self) -> SolverEnergies {
-        SolverEnergies {
-            kinetic: self.kinetic_energy(),
-            strain: snapshot::strain_energy(&self.lattice, &self.ties, &self.motion),
-            external_work: self.external_work,
-        }
-    }
-
+impl Snapshot for Total {
     fn particle_frame(&self) -> ParticleFrame {
         snapshot::particle_frame(&self.lattice, &self.motion)
     }
@@ -330,9 +294,53 @@ impl Solver for Total {
         snapshot::crack_frames(cracks, &self.probes, &self.motion)
     }
 
+    fn energies(&self) -> SolverEnergies {
+        SolverEnergies {
+            kinetic: self.kinetic_energy(),
+            strain: snapshot::strain_energy(&self.lattice, &self.ties, &self.motion),
+            external_work: self.external_work,
+        }
+    }
+
+    fn kinetic_energy(&self) -> f64 {
+        snapshot::kinetic_energy(&self.lattice, &self.ties, &self.motion)
+    }
+
+    fn momenta(&self) -> (Vector, f64) {
+        snapshot::momenta(&self.lattice, &self.ties, &self.motion)
+    }
+
+    fn rayleigh_quotient(&self) -> Option<f64> {
+        stability::rayleigh_quotient(&self.lattice, &self.ties, &self.motion)
+    }
+
+    fn continuation(&self, cracks: &Cracks) -> Option<Continuation> {
+        Some(Continuation {
+            particles: snapshot::places_and_motions(&self.lattice, &self.motion),
+            cracks: self.crack_frames(cracks),
+            outlines: self.outline_frames(),
+            external_work: self.external_work,
+        })
+    }
+
     fn save(&self) -> Result<Vec<u8>, SimulationError> {
         let saved = (&self.lattice.layout, &self.motion, &self.probes, &self.ties, self.external_work);
         saved::to_bytes(&saved)
+    }
+}
+
+impl SlidingTips for Total {
+    fn release(&self, cracks: &Cracks, id: TipId) -> Release {
+        self.ties.release(&self.lattice, &self.motion, cracks, id)
+    }
+
+    fn take_drag(&mut self, id: TipId) -> f64 {
+        self.ties.take_drag(id)
+    }
+
+    fn slide(&mut self, cracks: &Cracks, id: TipId) {
+        self.ties.soften(&self.lattice, cracks, id);
+        self.probes.move_last_faces(&self.lattice, cracks, id);
     }
 }
 

@@ -4,7 +4,7 @@
 use super::{Total, internal_forces};
 use crate::crack::cracks::{Cracks, TipId};
 use crate::particles::Particles;
-use crate::solver::Solver;
+use crate::solver::{SlidingTips, Snapshot, Solver};
 use crate::test_scenes;
 use fissure_scene::{End, Formulation, Kernel, Scene, Selection, TipDivision, Vector};
 use std::f64::consts::TAU;

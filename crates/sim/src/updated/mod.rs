@@ -30,7 +30,7 @@ use crate::grid::kernel;
 use crate::material::elastic::Elastic;
 use crate::particles::Particles;
 use crate::saved::{self, Fits};
-use crate::solver::{Handover, Observed, Solver, SolverEnergies};
+use crate::solver::{Continuation, Observed, SlidingTips, Snapshot, Solver, SolverEnergies};
 use contact::ContactPair;
 use faces::{CrackNow, Tracer};
 use fissure_scene::{
@@ -175,22 +175,22 @@ impl Updated {
     ///
     /// # Errors
     /// When a load or support selects nothing.
-    pub(crate) fn take_over(
+    pub(crate) fn continued(
         scene: &Scene,
         particles: Arc<Particles>,
         cracks: &Cracks,
-        handover: Handover,
+        continuation: Continuation,
     ) -> Result<Self, SimulationError> {
         let mut solver = Self::new(scene, particles, cracks)?;
         let state = &mut solver.state;
-        for (point, (position, velocity, gradient)) in state.points.iter_mut().zip(handover.particles) {
+        for (point, (position, velocity, gradient)) in state.points.iter_mut().zip(continuation.particles) {
             *point = MaterialPoint { position, velocity, elastic_gradient: gradient };
         }
-        for (now, frame) in state.cracks.iter_mut().zip(&handover.cracks) {
+        for (now, frame) in state.cracks.iter_mut().zip(&continuation.cracks) {
             now.take_over(frame);
         }
-        solver.take_over_outlines(&handover.outlines);
-        solver.state.external_work = handover.external_work;
+        solver.take_over_outlines(&continuation.outlines);
+        solver.state.external_work = continuation.external_work;
         Ok(solver)
     }
 
@@ -347,12 +347,12 @@ impl Solver for Updated {
         self.take_up(cracks, changed);
     }
 
-    fn observed(&self) -> &dyn Observed {
-        self
+    fn sliding(&self) -> Option<&dyn SlidingTips> {
+        None
     }
 
-    fn kinetic_energy(&self) -> f64 {
-        self.kinetic()
+    fn sliding_mut(&mut self) -> Option<&mut dyn SlidingTips> {
+        None
     }
 
     fn stop(&mut self) {
@@ -361,17 +361,34 @@ impl Solver for Updated {
         self.motion.fill(Motion::default());
     }
 
-    fn hand_over(&mut self, _cracks: &Cracks) -> Option<Handover> {
-        None
-    }
-
-    fn rayleigh_quotient(&self) -> Option<f64> {
-        // Its forces live on a grid that is laid anew in every step.
-        None
-    }
-
     fn set_damping(&mut self, rate: f64) {
         self.settings.damping = rate;
+    }
+}
+
+impl Snapshot for Updated {
+    fn particle_frame(&self) -> ParticleFrame {
+        self.frame_of_particles()
+    }
+
+    fn outline_frames(&self) -> Vec<OutlineFrame> {
+        self.frames_of_outlines()
+    }
+
+    fn crack_frames(&self, cracks: &Cracks) -> Vec<CrackFrame> {
+        self.frames_of_cracks(cracks)
+    }
+
+    fn energies(&self) -> SolverEnergies {
+        SolverEnergies {
+            kinetic: self.kinetic(),
+            strain: self.strain_energy(),
+            external_work: self.state.external_work,
+        }
+    }
+
+    fn kinetic_energy(&self) -> f64 {
+        self.kinetic()
     }
 
     fn momenta(&self) -> (Vector, f64) {
@@ -386,24 +403,13 @@ impl Solver for Updated {
         (linear, angular)
     }
 
-    fn energies(&self) -> SolverEnergies {
-        SolverEnergies {
-            kinetic: self.kinetic(),
-            strain: self.strain_energy(),
-            external_work: self.state.external_work,
-        }
+    fn rayleigh_quotient(&self) -> Option<f64> {
+        // Its forces live on a grid that is laid anew in every step.
+        None
     }
 
-    fn particle_frame(&self) -> ParticleFrame {
-        self.frame_of_particles()
-    }
-
-    fn outline_frames(&self) -> Vec<OutlineFrame> {
-        self.frames_of_outlines()
-    }
-
-    fn crack_frames(&self, cracks: &Cracks) -> Vec<CrackFrame> {
-        self.frames_of_cracks(cracks)
+    fn continuation(&self, _cracks: &Cracks) -> Option<Continuation> {
+        None
     }
 
     fn save(&self) -> Result<Vec<u8>, SimulationError> {

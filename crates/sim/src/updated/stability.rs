@@ -9,7 +9,7 @@ use fissure_scene::{Kernel, Scene};
 /// Places of a particle between two nodes at which a kernel is tried.
 const PLACES: usize = 256;
 
-/// What Σ w'²/w stands for with the bilinear kernel, where it has no bound: strains come from remapped velocities there. Measured: a cracked plate that
+/// What Σ w'²/w stands for with the bilinear kernel, where it has no bound: strains come from remapped velocities there. Assessment: a cracked plate that
 /// flies through the cells (FLIP) is stable at c_d Δt/h = 0.4 and gains energy at 0.6.
 const BILINEAR_SPREAD: f64 = 16.0;
 

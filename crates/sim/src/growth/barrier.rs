@@ -1,6 +1,6 @@
 //! What stands in the way of a tip: the rings of its body and other cracks. A tip ends exactly on them.
 
-use super::{Advance, LAST_LIGAMENT};
+use super::advance::{Advance, LAST_LIGAMENT};
 use crate::crack::Crack;
 use crate::crack::cracks::{Cracks, ENDS, TipId};
 use fissure_plane::{Point, Region, Vector, nearest_on_segment, orientation, segments_touch};
@@ -11,13 +11,13 @@ const PARTED: f64 = 8.0;
 
 /// A place where a tip ends.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Obstacle {
+pub(super) struct Barrier {
     at: Point,
     end: CrackEnd,
 }
 
-impl Obstacle {
-    /// The last advance of a tip that is at `from`: through `points` to the obstacle.
+impl Barrier {
+    /// The last advance of a tip that is at `from`: through `points` to the barrier.
     pub(super) fn finish(self, mut points: Vec<Point>, from: Point) -> Advance {
         let last = points.last().copied().unwrap_or(from);
         if (self.at - last).norm() > 0.0 {
@@ -32,13 +32,13 @@ impl Obstacle {
 }
 
 /// The first ring or crack on the way from `from` to `to`.
-pub(super) fn first_obstacle(cracks: &Cracks, id: TipId, region: &Region, from: Point, to: Point) -> Option<Obstacle> {
-    let mut nearest: Option<(f64, Obstacle)> = None;
+pub(super) fn first_barrier(cracks: &Cracks, id: TipId, region: &Region, from: Point, to: Point) -> Option<Barrier> {
+    let mut nearest: Option<(f64, Barrier)> = None;
     let mut consider = |a: Point, b: Point, what: CrackEnd| {
         if let Some((t, at)) = intersection(from, to, a, b)
             && nearest.is_none_or(|n| t < n.0)
         {
-            nearest = Some((t, Obstacle { at, end: what }));
+            nearest = Some((t, Barrier { at, end: what }));
         }
     };
     for ring in region.rings() {

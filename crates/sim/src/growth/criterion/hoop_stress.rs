@@ -1,9 +1,9 @@
-//! The criterion of growth: maximum hoop stress (Erdogan & Sih 1963).
+//! Maximum hoop stress (Erdogan & Sih 1963).
 //!
-//! A crack goes on in the direction in which the hoop stress around its tip is highest, when that stress reaches what mode I at K_Ic has. All that growth
-//! takes from the criterion is here: the direction ([`StressIntensity::kink_angle`]), the load in a direction ([`StressIntensity::equivalent`]), and how much of
-//! it is left beside the best direction ([`share_beside`]). Another criterion answers the same three questions in a file of its own.
+//! A crack goes on in the direction in which the hoop stress around its tip is highest, when that stress reaches what mode
+//! I at K_Ic has.
 
+use super::Criterion;
 use crate::StressIntensity;
 
 impl StressIntensity {
@@ -27,9 +27,23 @@ impl StressIntensity {
     }
 }
 
-/// Part of the highest hoop stress that is left at an angle [rad] from its direction, cos³(δ/2): that of mode I, for any mode.
-pub(super) fn share_beside(angle: f64) -> f64 {
-    (0.5 * angle).cos().powi(3)
+/// The criterion of maximum hoop stress.
+#[derive(Debug)]
+pub(super) struct HoopStress;
+
+impl Criterion for HoopStress {
+    fn kink_angle(&self, load: &StressIntensity, bending: f64) -> f64 {
+        load.kink_angle(bending)
+    }
+
+    fn equivalent(&self, load: &StressIntensity, angle: f64) -> f64 {
+        load.equivalent(angle)
+    }
+
+    /// cos³(δ/2): that of mode I, for any mode.
+    fn share_beside(&self, angle: f64) -> f64 {
+        (0.5 * angle).cos().powi(3)
+    }
 }
 
 #[cfg(test)]
@@ -101,7 +115,7 @@ mod tests {
     fn the_share_beside_is_that_of_mode_1() {
         for degrees in [-60.0_f64, -5.0, 0.0, 20.0, 75.0] {
             let angle = degrees.to_radians();
-            assert!((share_beside(angle) - k(1.0, 0.0).equivalent(angle)).abs() < 1e-15, "{degrees}");
+            assert!((HoopStress.share_beside(angle) - k(1.0, 0.0).equivalent(angle)).abs() < 1e-15, "{degrees}");
         }
     }
 }

@@ -1,0 +1,59 @@
+//! The next increment of a tip: along its guide, or the way the stress asks for, or the rest of the way to what is near.
+
+use super::advance::{Advance, LAST_LIGAMENT};
+use super::barrier::{beside, first_barrier};
+use super::heading::way;
+use crate::crack::Assessment;
+use crate::crack::cracks::{Cracks, TipId};
+use fissure_scene::{CrackEnd, Scene, TipState};
+
+/// The next increment of a tip that wants to grow.
+pub(crate) fn next_increment(
+    cracks: &Cracks,
+    id: TipId,
+    assessed: &Assessment,
+    scene: &Scene,
+    time: f64,
+) -> Option<Advance> {
+    let tip = cracks.tip(id)?;
+    let h = scene.cell_size;
+    let mut step = scene.growth.increment * h;
+    let from = cracks.position(id);
+    let region = &scene.bodies[cracks.of(id).body as usize].region;
+    // A schedule ends where it says, even within an increment.
+    if let Some(due) = tip.guide.as_ref().and_then(|g| g.due(tip.grown, time)).filter(|due| due.is_last) {
+        step = step.min(due.length);
+    }
+    if let Some(guide) = tip.guide.as_ref().filter(|g| g.strength() >= 1.0) {
+        // Along the guide, looking a ligament ahead.
+        let (target, ended) = guide.ahead(step);
+        let mut points = vec![target];
+        let mut last = from;
+        let pieces = (LAST_LIGAMENT / scene.growth.increment).ceil() as usize;
+        for piece in 1..=pieces + 1 {
+            let (next, _) = guide.ahead(step * piece as f64);
+            if let Some(hit) = first_barrier(cracks, id, region, last, next) {
+                points.truncate(0);
+                points.extend((1..piece).map(|k| guide.ahead(step * k as f64).0));
+                return Some(hit.finish(points, from));
+            }
+            last = next;
+        }
+        if (target - from).norm() <= 1e-9 * h {
+            return Some(Advance { points: Vec::new(), end: CrackEnd::Tip, state: TipState::GuideEnded });
+        }
+        points.dedup();
+        let state = if ended { TipState::GuideEnded } else { TipState::Growing };
+        return Some(Advance { points, end: CrackEnd::Tip, state });
+    }
+    let toward = way(cracks, id, assessed, scene);
+    if let Some(hit) = first_barrier(cracks, id, region, from, from + toward * (step + LAST_LIGAMENT * h)) {
+        return Some(hit.finish(Vec::new(), from));
+    }
+    if let Some(near) = beside(cracks, id, toward, h)
+        && let Some(hit) = first_barrier(cracks, id, region, from, near + (near - from) * 0.01)
+    {
+        return Some(hit.finish(Vec::new(), from));
+    }
+    Some(Advance { points: vec![from + toward * step], end: CrackEnd::Tip, state: TipState::Growing })
+}

@@ -1,0 +1,89 @@
+//! What a tip bears, what it could bear, and what growth costs it.
+
+use super::criterion::criterion;
+use super::heading::{physical_way, way};
+use super::seeking::{is_varied, toughness_at};
+use crate::crack::cracks::{Cracks, TipId};
+use crate::crack::{Assessment, DIRECTION_LENGTH};
+use crate::tip::gauge::Reading;
+use fissure_scene::{Scene, Vector};
+
+/// What a reading means for growth: direction and load by the criterion. The toughness is left 0: it is that of what lies ahead, and which way that is
+/// [`heading`](super::heading()) may have to say first; see [`toughness_ahead`].
+pub(crate) fn assess(reading: &Reading, scene: &Scene) -> Assessment {
+    let criterion = criterion();
+    let kink_angle = criterion.kink_angle(&reading.decisive, scene.growth.bending);
+    Assessment {
+        j_integral: reading.j_integral,
+        mode_1: reading.modes.mode_1,
+        mode_2: reading.modes.mode_2,
+        kink_angle,
+        equivalent: criterion.equivalent(&reading.decisive, kink_angle),
+        released: reading.released,
+        fracture_toughness: 0.0,
+        contour_radius: reading.contour_radius,
+        radius_shrunk: reading.radius_shrunk,
+    }
+}
+
+/// Whether a tip grows at `time` [s], given what was measured. `slides`: it can also go a part of an increment.
+pub(crate) fn wants_to_grow(
+    cracks: &Cracks,
+    id: TipId,
+    assessed: &Assessment,
+    scene: &Scene,
+    time: f64,
+    slides: bool,
+) -> bool {
+    let Some(tip) = cracks.tip(id) else { return false };
+    if !scene.growth.enabled || !tip.state.is_live() {
+        return false;
+    }
+    if let Some(due) = tip.guide.as_ref().and_then(|g| g.due(tip.grown, time)) {
+        let h = scene.cell_size;
+        return due.length >= scene.growth.increment * h || ((due.is_last || slides) && due.length > 1e-9 * h);
+    }
+    // NaN compares false: nothing known, no growth.
+    let needed = assessed.fracture_toughness;
+    equivalent(cracks, id, assessed, scene) >= needed && needed > 0.0
+}
+
+/// Fracture toughness of what the next increment would break [Pa·√m]: of what lies in its middle, in the direction the tip takes.
+pub(crate) fn toughness_ahead(cracks: &Cracks, id: TipId, assessed: &Assessment, scene: &Scene) -> f64 {
+    let half = 0.5 * scene.growth.increment * scene.cell_size;
+    toughness_at(cracks.of(id), cracks.position(id) + way(cracks, id, assessed, scene) * half, scene)
+}
+
+/// K_eq [Pa·√m] for the direction the tip would take: what was measured for the physical direction, times how much less that one gets of it.
+fn equivalent(cracks: &Cracks, id: TipId, assessed: &Assessment, scene: &Scene) -> f64 {
+    let guide = cracks.tip(id).and_then(|t| t.guide.as_ref());
+    let has_guide = guide.is_some_and(|g| g.strength() > 0.0);
+    if !has_guide && !is_varied(cracks.of(id), scene) {
+        return assessed.equivalent;
+    }
+    let ahead = cracks.ahead(id, DIRECTION_LENGTH * scene.cell_size);
+    let split = crate::StressIntensity { mode_1: assessed.mode_1.max(0.0), mode_2: assessed.mode_2 };
+    let along = |toward: Vector| criterion().equivalent(&split, ahead.perp(&toward).atan2(ahead.dot(&toward)));
+    let own = along(physical_way(cracks, id, assessed, scene));
+    if own > 0.0 { assessed.equivalent * along(way(cracks, id, assessed, scene)) / own } else { 0.0 }
+}
+
+/// What a way of a tip costs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Cost {
+    /// Nothing; a schedule lets the tip go on by so much now [m].
+    Scheduled(f64),
+    /// Energy per length [J/m²].
+    Energy(f64),
+}
+
+/// What growth costs a tip. In energy: of what is released now, the part that is needed. K_eq² goes with the energy that is released, whatever the mode
+/// and the direction, so at K_eq = K_c this is all of it, and in mode I it is always K_c²/E'.
+pub(crate) fn cost(cracks: &Cracks, id: TipId, assessed: &Assessment, scene: &Scene, time: f64) -> Cost {
+    let tip = cracks.tip(id);
+    if let Some(due) = tip.and_then(|t| t.guide.as_ref()?.due(t.grown, time)) {
+        return Cost::Scheduled(due.length);
+    }
+    let part = assessed.fracture_toughness / equivalent(cracks, id, assessed, scene);
+    Cost::Energy(assessed.released * part * part)
+}
