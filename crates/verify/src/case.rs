@@ -1,7 +1,6 @@
 //! What a reference case is and how it is run.
 
-use crate::cases;
-use crate::report::{Report, Tally};
+use crate::report::{Progress, Report, Tally};
 use fissure_sim::SimulationError;
 
 /// How a case is run.
@@ -21,9 +20,6 @@ impl Options {
         self.cells.unwrap_or(standard)
     }
 }
-
-/// Told now and then what is being computed.
-pub type Progress<'a> = &'a mut dyn FnMut(&str);
 
 /// A fracture or mechanics problem whose solution is known.
 #[derive(Clone, Copy)]
@@ -63,33 +59,4 @@ impl Case {
         (self.compute)(options, &mut tally)?;
         Ok(tally.finish(self.name, self.about, started.elapsed().as_secs_f64()))
     }
-}
-
-/// All cases, in the order of the printed table.
-pub const CASES: &[Case] = &[
-    cases::edge_crack::CASE,
-    cases::center_crack::CASE,
-    cases::slanted_crack::CASE,
-    cases::closed_crack::CASE,
-    cases::double_cantilever::CASE,
-    cases::crack_pairs::CASE,
-    cases::step_load::CASE,
-    cases::moving_crack::CASE,
-    cases::crack_motion::CASE,
-    cases::strip::CASE,
-    cases::impacted_notch::CASE,
-    cases::branching_plate::CASE,
-    cases::kink_angles::CASE,
-    cases::three_holes::CASE,
-    cases::cantilever::CASE,
-    cases::bar_wave::CASE,
-    cases::spinning_disc::CASE,
-    cases::free_flight::FLIGHT,
-    cases::free_flight::TURNS,
-    cases::cantilever_growth::CASE,
-];
-
-/// The case of a name.
-pub fn find(name: &str) -> Option<&'static Case> {
-    CASES.iter().find(|c| c.name == name)
 }

@@ -19,11 +19,13 @@
 mod case;
 mod cases;
 mod interpolate;
+mod list;
 mod problem;
 mod report;
 mod table;
 
-pub use case::{CASES, Case, Options, Progress, find};
+pub use case::{Case, Options};
 pub use cases::edge_crack::{EdgeCrack, EdgeCrackResult};
-pub use report::{Expected, Report, Row};
+pub use list::{CASES, find};
+pub use report::{Expected, Progress, Report, Row};
 pub use table::{markdown, text};

@@ -1,8 +1,10 @@
 //! What a case found, beside what it should have found.
 
-use crate::case::Progress;
 use fissure_sim::Simulation;
 use std::ops::ControlFlow;
+
+/// Told now and then what is being computed.
+pub type Progress<'a> = &'a mut dyn FnMut(&str);
 
 /// What a computed number is held against.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,0 +1,33 @@
+//! The list of cases.
+
+use crate::case::Case;
+use crate::cases;
+
+/// All cases, in the order of the printed table.
+pub const CASES: &[Case] = &[
+    cases::edge_crack::CASE,
+    cases::center_crack::CASE,
+    cases::slanted_crack::CASE,
+    cases::closed_crack::CASE,
+    cases::double_cantilever::CASE,
+    cases::crack_pairs::CASE,
+    cases::step_load::CASE,
+    cases::moving_crack::CASE,
+    cases::crack_motion::CASE,
+    cases::strip::CASE,
+    cases::impacted_notch::CASE,
+    cases::branching_plate::CASE,
+    cases::kink_angles::CASE,
+    cases::three_holes::CASE,
+    cases::cantilever::CASE,
+    cases::bar_wave::CASE,
+    cases::spinning_disc::CASE,
+    cases::free_flight::FLIGHT,
+    cases::free_flight::TURNS,
+    cases::cantilever_growth::CASE,
+];
+
+/// The case of a name.
+pub fn find(name: &str) -> Option<&'static Case> {
+    CASES.iter().find(|c| c.name == name)
+}
