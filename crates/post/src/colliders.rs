@@ -1,9 +1,10 @@
 //! The colliders as solids.
 
 use crate::boolean::{material, twice_area};
+use crate::error::PostError;
 use crate::extrude::Extrusion;
-use crate::mesh::{Content, Mesh};
-use crate::post::{PostError, PostOptions, object_name};
+use crate::mesh::{Content, Mesh, object_name};
+use crate::options::PostOptions;
 use crate::snap::Grid;
 use crate::source::{Carried, Slot, SourceEdge};
 use fissure_scene::{Collider, ColliderShape, Frame, Point, Pose, Scene, Vector};

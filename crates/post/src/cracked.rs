@@ -1,13 +1,14 @@
 //! The bodies as solids, with or without their cracks.
 
 use crate::boolean::material;
+use crate::error::PostError;
 use crate::extrude::Extrusion;
-use crate::mesh::{Content, Mesh};
+use crate::mesh::{Content, Mesh, object_name};
 use crate::opening::opening_edges;
+use crate::options::PostOptions;
 use crate::outline::outline_edges;
 use crate::pieces::{Polygon, pieces, without_slivers};
 use crate::pinch::part_pinches;
-use crate::post::{PostError, PostOptions, object_name};
 use crate::seam::{guests, join};
 use crate::snap::Grid;
 use crate::source::SourceEdge;

@@ -2,9 +2,9 @@
 
 use crate::boolean::{Edge, SourceIndex};
 use crate::extrude::Extrusion;
-use crate::mesh::{Content, Mesh};
+use crate::mesh::{Content, Mesh, object_name};
 use crate::opening::opening_edges;
-use crate::post::{PostOptions, object_name};
+use crate::options::PostOptions;
 use crate::snap::Grid;
 use fissure_scene::{CrackFrame, Frame, Scene};
 

@@ -2,7 +2,7 @@
 
 use crate::mesh::{Content, Mesh};
 use crate::packed::{PackedVertex, compact, pack};
-use crate::post::Provenance;
+use crate::provenance::Provenance;
 use crate::source::Slot;
 use fissure_scene::UpAxis;
 use gltf::binary::{Glb, Header};

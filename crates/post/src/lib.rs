@@ -13,7 +13,7 @@
 //! 5. `pinch`: contours that touch in a point are parted, so that the solid is manifold for every reader.
 //! 6. `triangulate`, `extrude`: caps and walls, with normals, texture coordinates, velocities and material slots.
 //! 7. [`Mesh::check`]: closed, manifold, oriented, volume = area × thickness, in the precision of the file.
-//! 8. `glb`, `ply`, `write`, `manifest`.
+//! 8. `glb`, `ply`: the bytes of files; `write`, `manifest`: the files, with the feature `files`, which is on by default.
 //!
 //! Promised: every solid that is returned has passed the check. Not promised: that polygons of different bodies, or of
 //! fragments that the simulation lets overlap in different bodies, stay apart; openings below two grid steps (4e-6 m in
@@ -22,12 +22,16 @@
 mod boolean;
 mod colliders;
 mod cracked;
+mod error;
 mod extrude;
 mod faces;
 mod glb;
+#[cfg(feature = "files")]
 mod manifest;
 mod mesh;
 mod opening;
+mod options;
+#[cfg(feature = "files")]
 mod origin;
 mod outline;
 mod packed;
@@ -36,16 +40,31 @@ mod pieces;
 mod pinch;
 mod ply;
 mod post;
+mod provenance;
+#[cfg(feature = "files")]
+mod record;
 mod seam;
 mod snap;
 mod source;
 mod triangulate;
+#[cfg(feature = "files")]
 mod write;
+#[cfg(feature = "files")]
+mod write_error;
 
+pub use error::PostError;
 pub use glb::{GlbError, to_glb};
-pub use manifest::{FileRecord, Manifest};
+#[cfg(feature = "files")]
+pub use manifest::Manifest;
 pub use mesh::{Content, Mesh, MeshDefect, Vertex};
+pub use options::PostOptions;
 pub use ply::to_ply;
-pub use post::{FrameMeshes, PostError, PostOptions, Provenance, post_frame};
+pub use post::{FrameMeshes, post_frame};
+pub use provenance::Provenance;
+#[cfg(feature = "files")]
+pub use record::{FileRecord, file_name};
 pub use source::Slot;
-pub use write::{WriteError, file_name, write_frame};
+#[cfg(feature = "files")]
+pub use write::write_frame;
+#[cfg(feature = "files")]
+pub use write_error::WriteError;

@@ -1,46 +1,16 @@
 //! The list of written files.
 
 use crate::origin::{TOOL, is_ours};
-use crate::post::Provenance;
-use crate::write::{WriteError, file_name};
+use crate::provenance::Provenance;
+use crate::record::{FileRecord, file_name};
+use crate::write_error::WriteError;
 use fissure_files::Folder;
-use fissure_scene::{Format, Part};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Name of the list.
 const NAME: &str = "manifest.json";
-
-/// One written file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct FileRecord {
-    /// Name of the file within its folder.
-    pub file: String,
-    /// Where it lies.
-    #[serde(skip)]
-    pub path: PathBuf,
-    /// What it shows.
-    pub part: Part,
-    /// Its format.
-    pub format: Format,
-    /// Frame number.
-    pub frame: i64,
-    /// Time [s].
-    pub time: f64,
-    /// Number of objects: fragments, cracks or colliders.
-    pub pieces: usize,
-    /// Number of vertices in the file's meshes.
-    pub vertices: usize,
-    /// Number of triangles.
-    pub triangles: usize,
-    /// Area of all solids in the drawing plane [m²].
-    pub area: f64,
-    /// Thickness of solids [m]; 0 where there are none.
-    pub thickness: f64,
-    /// Volume of all solids as the file holds them [m³].
-    pub volume: f64,
-}
 
 /// Collects records in any order and lists them by frame and name.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -1,7 +1,6 @@
 //! The particles as points.
 
-use crate::mesh::{Content, Mesh, Vertex};
-use crate::post::object_name;
+use crate::mesh::{Content, Mesh, Vertex, object_name};
 use fissure_scene::{Frame, Scene};
 use std::collections::BTreeMap;
 

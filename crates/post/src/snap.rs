@@ -1,6 +1,6 @@
 //! The power-of-two grid on which all plane geometry is done.
 
-use crate::post::PostError;
+use crate::error::PostError;
 use fissure_scene::Point;
 use i_overlay::i_float::int::point::IntPoint;
 

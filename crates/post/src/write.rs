@@ -1,60 +1,15 @@
 //! Mesh files of a sequence.
 
-use crate::glb::{GlbError, to_glb};
-use crate::manifest::FileRecord;
+use crate::glb::to_glb;
 use crate::mesh::{Content, Mesh};
 use crate::origin::is_ours;
 use crate::ply::to_ply;
 use crate::post::FrameMeshes;
-use fissure_files::{FileError, Folder};
+use crate::record::{FileRecord, file_name};
+use crate::write_error::WriteError;
+use fissure_files::Folder;
 use fissure_scene::{Format, Part};
 use std::path::PathBuf;
-
-/// Why a mesh or the list of meshes cannot be written.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum WriteError {
-    /// The file system refused.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// There is a file in the way that Fissure has not made.
-    #[error("`{}` was not made by Fissure and stays as it is", path.display())]
-    Foreign {
-        /// The file.
-        path: PathBuf,
-    },
-    /// The meshes do not fit into a GLB file.
-    #[error("cannot write `{file}`: {cause}")]
-    Glb {
-        /// The file.
-        file: String,
-        /// Why.
-        cause: GlbError,
-    },
-    /// The meshes cannot be written as PLY.
-    #[error("cannot write `{file}`: {cause}")]
-    Ply {
-        /// The file.
-        file: String,
-        /// Why.
-        cause: std::io::Error,
-    },
-    /// The list cannot be written as JSON.
-    #[error("cannot write the list of meshes: {0}")]
-    Json(#[from] serde_json::Error),
-}
-
-impl WriteError {
-    /// What the user can do about it.
-    pub fn remedy(&self) -> &'static str {
-        match self {
-            Self::File(error) => error.remedy(),
-            Self::Foreign { .. } => "move it away, or choose another folder with --output",
-            Self::Glb { .. } => "write PLY, or use a larger `grid.particle_spacing`",
-            Self::Ply { .. } | Self::Json(_) => "please report it with the scene file",
-        }
-    }
-}
 
 /// Writes the meshes of one frame into `folder`, which must exist, one file per part and format:
 /// `prefix.0001.glb` for the cracked body, `prefix_particles.0001.glb` and so on for other parts, so that each part is
@@ -89,22 +44,6 @@ pub fn write_frame(
         }
     }
     Ok(records)
-}
-
-/// Name of the file of one part, frame and format.
-pub fn file_name(prefix: &str, part: Part, frame: i64, format: Format) -> String {
-    let part = match part {
-        Part::Cracked => "",
-        Part::Body => "_body",
-        Part::Faces => "_faces",
-        Part::Collider => "_collider",
-        Part::Particles => "_particles",
-    };
-    let extension = match format {
-        Format::Glb => "glb",
-        Format::Ply => "ply",
-    };
-    format!("{prefix}{part}.{frame:04}.{extension}")
 }
 
 fn record(

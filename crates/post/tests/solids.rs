@@ -278,6 +278,9 @@ fn a_polygon_without_particles_belongs_to_the_nearest() {
     }
     (particles.piece, particles.position) = (vec![7], vec![particles.position[keep]]);
     (particles.rest, particles.velocity) = (vec![particles.rest[keep]], vec![particles.velocity[keep]]);
+    for field in [&mut particles.deformation_gradient, &mut particles.cauchy_stress] {
+        field.truncate(1);
+    }
     let meshes = cracked(&scene, &frame);
     assert_eq!(meshes.iter().map(|m| m.piece).collect::<Vec<_>>(), [7]);
     assert!((area(&meshes) - 400.0).abs() < 1e-3);

@@ -14,6 +14,7 @@ mod curve;
 pub mod document;
 mod fault;
 mod frame;
+mod frame_check;
 mod infinite;
 #[cfg(feature = "load")]
 mod load;
@@ -34,6 +35,7 @@ pub use fissure_plane::{Matrix, Point, Region, Vector};
 pub use curve::Curve;
 pub use fault::{Key, KeyPath, SceneFault, Warning};
 pub use frame::*;
+pub use frame_check::{FrameFault, FramePart};
 #[cfg(feature = "load")]
 pub use load::{
     Draft, DraftOptions, LoadError, LoadErrorKind, Loaded, Place, draft, load, load_with_warnings, schema, template,

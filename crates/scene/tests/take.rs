@@ -22,7 +22,8 @@ fn frames_come_back_bit_for_bit() {
     }
     let mut uneven = frame(1);
     uneven.particles.body.pop();
-    assert!(frame_to_bytes(&uneven).unwrap_err().contains("lengths"));
+    let fault = FrameFault::UnequalLengths { part: FramePart::Particles, lengths: vec![5, 4, 5, 5, 5, 5, 5, 5] };
+    assert_eq!(frame_to_bytes(&uneven), Err(FrameFileError::Frame(fault)));
 }
 
 /// Writes the frames of `numbers` into a new take; the last one with its state.

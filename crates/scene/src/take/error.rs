@@ -1,5 +1,6 @@
 //! What can go wrong with a take.
 
+use super::tensors::FrameFileError;
 use fissure_files::FileError;
 use std::path::{Path, PathBuf};
 
@@ -108,7 +109,15 @@ pub enum TakeError {
         /// The frame.
         number: i64,
         /// Why.
-        cause: String,
+        cause: FrameFileError,
+    },
+    /// A frame that does not follow the last one.
+    #[error("frame {number} cannot be written: it does not follow frame {last}")]
+    OutOfOrder {
+        /// The frame.
+        number: i64,
+        /// The newest frame of the take.
+        last: i64,
     },
 }
 
@@ -138,7 +147,7 @@ impl TakeError {
                 "keep the take and write elsewhere with --output, or start afresh with --overwrite"
             }
             Self::Foreign { .. } => "move it away, or choose another folder with --output",
-            Self::BadFrame { .. } => "please report it with the scene file",
+            Self::BadFrame { .. } | Self::OutOfOrder { .. } => "please report it with the scene file",
         }
     }
 

@@ -35,5 +35,5 @@ pub use opening::{Opened, Start};
 pub use read::Take;
 pub use remark::Remark;
 pub use state::SavedState;
-pub use tensors::{frame_from_bytes, frame_to_bytes};
+pub use tensors::{FrameFileError, frame_from_bytes, frame_to_bytes};
 pub use write::TakeWriter;

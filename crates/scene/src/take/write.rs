@@ -85,8 +85,7 @@ impl TakeWriter {
             return state.map_or(Ok(()), |state| self.write_state(state, frame.number));
         }
         if let Some(last) = self.newest().filter(|last| last.checked_add(1) != Some(frame.number)) {
-            let cause = format!("it does not follow frame {last}");
-            return Err(TakeError::BadFrame { number: frame.number, cause });
+            return Err(TakeError::OutOfOrder { number: frame.number, last });
         }
         // One that is there but not listed was written just before a death.
         if self.folder.read(&name)?.is_some_and(|there| !there.is_empty() && !is_frame(&there)) {

@@ -1,0 +1,143 @@
+//! From a frame to tensors.
+
+use super::{FORMAT, FrameFileError, STATES, TIP_NUMBERS, tip_numbers};
+use crate::frame::{CrackEnd, End, Frame};
+use fissure_plane::{Matrix, Point, Vector};
+use safetensors::tensor::{Dtype, View, serialize};
+use std::borrow::Cow;
+use std::collections::HashMap;
+
+struct Tensor {
+    dtype: Dtype,
+    shape: Vec<usize>,
+    bytes: Vec<u8>,
+}
+
+impl View for &Tensor {
+    fn dtype(&self) -> Dtype {
+        self.dtype
+    }
+    fn shape(&self) -> &[usize] {
+        &self.shape
+    }
+    fn data(&self) -> Cow<'_, [u8]> {
+        Cow::Borrowed(&self.bytes)
+    }
+    fn data_len(&self) -> usize {
+        self.bytes.len()
+    }
+}
+
+#[derive(Default)]
+struct Tensors(Vec<(String, Tensor)>);
+
+impl Tensors {
+    fn add(&mut self, name: impl Into<String>, dtype: Dtype, shape: Vec<usize>, bytes: Vec<u8>) {
+        self.0.push((name.into(), Tensor { dtype, shape, bytes }));
+    }
+    fn f64s(&mut self, name: impl Into<String>, shape: Vec<usize>, values: impl Iterator<Item = f64>) {
+        self.add(name, Dtype::F64, shape, values.flat_map(f64::to_le_bytes).collect());
+    }
+    fn numbers(&mut self, name: impl Into<String>, values: impl ExactSizeIterator<Item = f64>) {
+        self.f64s(name, vec![values.len()], values);
+    }
+    fn u32s(&mut self, name: impl Into<String>, values: impl ExactSizeIterator<Item = u32>) {
+        self.add(name, Dtype::U32, vec![values.len()], values.flat_map(u32::to_le_bytes).collect());
+    }
+    fn i64s(&mut self, name: impl Into<String>, shape: Vec<usize>, values: impl Iterator<Item = i64>) {
+        self.add(name, Dtype::I64, shape, values.flat_map(i64::to_le_bytes).collect());
+    }
+    fn points<'a>(&mut self, name: impl Into<String>, points: impl Iterator<Item = &'a Point>) {
+        let values: Vec<f64> = points.flat_map(|p| [p.x, p.y]).collect();
+        self.f64s(name, vec![values.len() / 2, 2], values.into_iter());
+    }
+    fn vectors<'a>(&mut self, name: impl Into<String>, vectors: impl Iterator<Item = &'a Vector>) {
+        let values: Vec<f64> = vectors.flat_map(|v| [v.x, v.y]).collect();
+        self.f64s(name, vec![values.len() / 2, 2], values.into_iter());
+    }
+    fn matrices(&mut self, name: impl Into<String>, matrices: &[Matrix]) {
+        let values = matrices.iter().flat_map(|m| [m.m11, m.m12, m.m21, m.m22]);
+        self.f64s(name, vec![matrices.len(), 2, 2], values);
+    }
+    fn offsets(&mut self, name: impl Into<String>, lengths: impl Iterator<Item = usize>) {
+        let mut offsets = vec![0_i64];
+        let mut sum = 0;
+        offsets.extend(lengths.map(|length| {
+            sum += length as i64;
+            sum
+        }));
+        self.i64s(name, vec![offsets.len()], offsets.into_iter());
+    }
+}
+
+/// A frame as the bytes of a safetensors file. Equal frames give equal bytes.
+///
+/// # Errors
+/// When the frame does not pass [`Frame::check`], or is too large for the format.
+pub fn frame_to_bytes(frame: &Frame) -> Result<Vec<u8>, FrameFileError> {
+    frame.check()?;
+    let mut t = Tensors::default();
+    t.i64s("frame.number", vec![1], std::iter::once(frame.number));
+    t.numbers("frame.time", std::iter::once(frame.time));
+
+    let p = &frame.particles;
+    t.u32s("particles.id", p.id.iter().copied());
+    t.u32s("particles.body", p.body.iter().copied());
+    t.u32s("particles.piece", p.piece.iter().copied());
+    t.points("particles.rest", p.rest.iter());
+    t.points("particles.position", p.position.iter());
+    t.vectors("particles.velocity", p.velocity.iter());
+    t.matrices("particles.deformation_gradient", &p.deformation_gradient);
+    t.matrices("particles.cauchy_stress", &p.cauchy_stress);
+
+    let o = &frame.outlines;
+    t.u32s("outlines.body", o.iter().map(|r| r.body));
+    t.u32s("outlines.ring", o.iter().map(|r| r.ring));
+    t.offsets("outlines.offset", o.iter().map(|r| r.rest.len()));
+    t.points("outlines.rest", o.iter().flat_map(|r| &r.rest));
+    t.points("outlines.position", o.iter().flat_map(|r| &r.position));
+    t.vectors("outlines.velocity", o.iter().flat_map(|r| &r.velocity));
+
+    let c = &frame.cracks;
+    t.u32s("cracks.crack", c.iter().map(|k| k.crack));
+    t.u32s("cracks.body", c.iter().map(|k| k.body));
+    t.offsets("cracks.offset", c.iter().map(|k| k.rest.len()));
+    t.i64s("cracks.ends", vec![c.len(), 2], c.iter().flat_map(|k| [end_number(k.start), end_number(k.end)]));
+    t.points("cracks.rest", c.iter().flat_map(|k| &k.rest));
+    t.points("cracks.above", c.iter().flat_map(|k| &k.above));
+    t.points("cracks.below", c.iter().flat_map(|k| &k.below));
+    t.vectors("cracks.above_velocity", c.iter().flat_map(|k| &k.above_velocity));
+    t.vectors("cracks.below_velocity", c.iter().flat_map(|k| &k.below_velocity));
+
+    let tips = &frame.tips;
+    t.u32s("tips.crack", tips.iter().map(|tip| tip.crack));
+    t.u32s("tips.end", tips.iter().map(|tip| u32::from(tip.end == End::End)));
+    t.u32s("tips.state", tips.iter().map(|tip| STATES.iter().position(|s| *s == tip.state).unwrap_or(0) as u32));
+    t.points("tips.position", tips.iter().map(|tip| &tip.position));
+    for (i, name) in TIP_NUMBERS.into_iter().enumerate() {
+        t.numbers(format!("tips.{name}"), tips.iter().map(|tip| tip_numbers(tip)[i]));
+    }
+    let shrunk = tips.iter().map(|tip| u8::from(tip.radius_shrunk)).collect();
+    t.add("tips.radius_shrunk", Dtype::U8, vec![tips.len()], shrunk);
+
+    let e = &frame.energies;
+    t.numbers("energies.kinetic", std::iter::once(e.kinetic));
+    t.numbers("energies.strain", std::iter::once(e.strain));
+    t.numbers("energies.external_work", std::iter::once(e.external_work));
+    t.numbers("energies.crack", std::iter::once(e.crack));
+    t.points("colliders.position", frame.colliders.iter().map(|pose| &pose.position));
+    t.numbers("colliders.angle", frame.colliders.iter().map(|pose| pose.angle));
+
+    // One entry only: the header keeps the order of a hash map.
+    let about = HashMap::from([("format".to_owned(), FORMAT.to_owned())]);
+    serialize(t.0.iter().map(|(name, tensor)| (name.as_str(), tensor)), Some(about))
+        .map_err(|error| FrameFileError::NotWritten(error.to_string()))
+}
+
+fn end_number(end: CrackEnd) -> i64 {
+    match end {
+        CrackEnd::Tip => -1,
+        CrackEnd::Mouth => -2,
+        CrackEnd::Junction { crack } => i64::from(crack),
+    }
+}
