@@ -181,11 +181,22 @@ mod tests {
             }
         }
 
-        /// No argument makes the parser panic, and a bare word is taken as it is.
+        /// Any argument is refused with a remedy, or its value is found under its keys; a bare word is taken as it is.
         #[test]
-        fn any_text_is_refused_or_read(argument in ".{0,30}", word in "[a-z][a-z ]{2,8}[a-z]") {
+        fn any_text_is_refused_or_read(argument in prop_oneof![".{0,30}", "[a-z. \"]{1,6}=.{0,20}"],
+                                       word in "[a-z][a-z ]{2,8}[a-z]") {
             let mut table = Table::new();
-            if let Ok(set) = Override::parse(&argument) { let _ = set.apply(&mut table); }
+            let set = Override::parse(&argument).and_then(|set| set.apply(&mut table).map(|_| set));
+            match set {
+                Ok(set) => {
+                    let (first, further) = set.keys.split_first().unwrap();
+                    let inner = |value: Option<&'_ Value>, key: &String| value?.get(key).cloned();
+                    let found = further.iter().fold(table.get(first).cloned(), |here, key| inner(here.as_ref(), key));
+                    // As text, because NaN is not equal to itself.
+                    prop_assert_eq!(found.map(|v| v.to_string()), Some(set.value.to_string()));
+                }
+                Err((message, remedy)) => prop_assert!(!message.is_empty() && !remedy.is_empty()),
+            }
             prop_assume!(!["true", "false"].contains(&word.as_str()));
             prop_assert_eq!(Override::parse(&format!("a={word}")).unwrap().value, Value::String(word));
         }
