@@ -187,4 +187,48 @@ mod tests {
         assert_eq!(crossing(point(hair, next), point(0.6, 0.1), a, b).map(|c| c.side), Some(Side::Above));
         assert_eq!(crossing(point(next, hair), point(0.6, 0.1), a, b), None);
     }
+
+    use fissure_plane::Region;
+    use proptest::prelude::*;
+
+    /// A ring around the origin, counter-clockwise, whose corners lie at distances of 0.3 to 1.
+    fn any_ring() -> impl Strategy<Value = Vec<Point>> {
+        prop::collection::vec(0.3_f64..1.0, 3..12).prop_map(|radii| {
+            let turn = std::f64::consts::TAU / radii.len() as f64;
+            let corner = |(k, r): (usize, &f64)| point(r * (turn * k as f64).cos(), r * (turn * k as f64).sin());
+            radii.iter().enumerate().map(corner).collect()
+        })
+    }
+
+    fn any_point() -> impl Strategy<Value = Point> {
+        (-1.2_f64..1.2, -1.2_f64..1.2).prop_map(|(x, y)| point(x, y))
+    }
+
+    proptest! {
+        /// Truth: the even-odd rule, which counts along another line. A crack that closes parts inside and outside, and
+        /// inside is on its left; coarse places, so that many lines run through vertices.
+        #[test]
+        fn a_closed_crack_parts_inside_and_outside(
+            ring in any_ring(), particle in any_point(), node in any_point(), coarse in any::<bool>(),
+        ) {
+            let place = |p: Point| if coarse { point((4.0 * p.x).round() / 4.0, (4.0 * p.y).round() / 4.0) } else { p };
+            let ring: Vec<Point> = ring.into_iter().map(place).collect();
+            let (particle, node) = (place(particle), place(node));
+            let closed: Vec<Point> = ring.iter().copied().chain([ring[0]]).collect();
+            // A place on the crack itself belongs to neither; rings that coarse places fold are no rings.
+            let on = |p: Point| closed.windows(2).any(|w| {
+                let along = w[1] - w[0];
+                orientation(w[0], w[1], p) == 0.0 && (p - w[0]).dot(&along) * (p - w[1]).dot(&along) <= 0.0
+            });
+            prop_assume!(!on(particle) && !on(node) && fissure_plane::find_crossing(&[&ring], true).is_none());
+            let region = Region { exterior: ring, holes: Vec::new() };
+            let inside = [particle, node].map(|p| region.contains(p));
+            let expected = match inside {
+                [true, false] => Some(Side::Above),
+                [false, true] => Some(Side::Below),
+                _ => None,
+            };
+            prop_assert_eq!(net(particle, node, &closed), expected);
+        }
+    }
 }

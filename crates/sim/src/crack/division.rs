@@ -414,3 +414,115 @@ fn divide(
     }
     crosses_real.then_some(PairCut { side, fraction: 1.0, gradient: Vector::zeros() })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const SPACING: f64 = 0.5;
+
+    fn any_point() -> impl Strategy<Value = Point> {
+        (0.0_f64..12.0, 0.0_f64..12.0).prop_map(|(x, y)| Point::new(x, y))
+    }
+
+    /// Lines of 2 to 5 points in a square of 12 cells of size 1, with tips or open ends.
+    fn any_lines(ends: impl Strategy<Value = LineEnd> + Clone) -> impl Strategy<Value = Vec<CrackLine>> {
+        let line = (prop::collection::vec(any_point(), 2..6), ends.clone(), ends);
+        prop::collection::vec(line, 1..4).prop_map(|lines| {
+            let number = |(crack, (points, start, end))| CrackLine { crack: crack as u32, points, start, end };
+            lines.into_iter().enumerate().map(number).collect()
+        })
+    }
+
+    /// A particle and a node within the reach of a bilinear kernel.
+    fn any_pair() -> impl Strategy<Value = (Point, Point)> {
+        (any_point(), -1.0_f64..1.0, -1.0_f64..1.0).prop_map(|(p, x, y)| (p, p + Vector::new(x, y)))
+    }
+
+    fn division(lines: &[CrackLine], tips: TipDivision, cut: TipCut) -> Division {
+        Division::new(lines, tips, cut, 1.0, SPACING, 1.5)
+    }
+
+    fn any_cut() -> impl Strategy<Value = TipCut> {
+        prop_oneof![Just(TipCut::PLAIN), Just(TipCut::tied(0.8))]
+    }
+
+    proptest! {
+        /// Truth: a partition of unity. The shares of a pair add up to one, their gradients to zero, none is negative,
+        /// and no two are of one field.
+        #[test]
+        fn the_shares_of_a_pair_are_a_partition_of_unity(
+            lines in any_lines(prop_oneof![Just(LineEnd::Tip), Just(LineEnd::Open(1.0))]), cut in any_cut(),
+            (particle, node) in any_pair(),
+        ) {
+            let shares = division(&lines, TipDivision::PartlyCut, cut).pair(particle, node);
+            let sum: f64 = shares.iter().map(|s| s.fraction).sum();
+            let gradient: Vector = shares.iter().map(|s| s.gradient).sum();
+            prop_assert!((sum - 1.0).abs() < 1e-14 && gradient.norm() < 1e-13, "{shares:?}");
+            prop_assert!(shares.iter().all(|s| s.fraction > 0.0));
+            let mut fields: Vec<_> = shares.iter().map(|s| &s.crossed).collect();
+            fields.sort();
+            fields.dedup();
+            prop_assert_eq!(fields.len(), shares.len());
+        }
+
+        /// Truth: every segment of every crack asked in turn. The cells find what a search without them finds.
+        #[test]
+        fn what_is_crossed_is_what_all_segments_say(
+            lines in any_lines(Just(LineEnd::Tip)), (particle, node) in any_pair(),
+        ) {
+            let mut expected = CrossedSet::new();
+            for line in &lines {
+                let mut net = NetCrossing::default();
+                line.points.windows(2).filter_map(|w| crossing(particle, node, w[0], w[1])).for_each(|c| net.add(c));
+                expected.extend(net.side().map(|side| (line.crack, side)));
+            }
+            let found = division(&lines, TipDivision::LineCrossing, TipCut::PLAIN).crossed(particle, node);
+            prop_assert_eq!(found, expected);
+        }
+
+        /// Truth: the pairs themselves. Where a box is said to be whole, no pair of a particle and a node in it is cut.
+        #[test]
+        fn a_box_that_is_whole_has_no_divided_pair(
+            lines in any_lines(prop_oneof![Just(LineEnd::Tip), Just(LineEnd::Open(1.0))]), cut in any_cut(),
+            particle in any_point(), nodes in prop::collection::vec((-1.0_f64..1.0, -1.0_f64..1.0), 1..8),
+        ) {
+            let division = division(&lines, TipDivision::PartlyCut, cut);
+            let (low, high) = (particle - Vector::repeat(1.0), particle + Vector::repeat(1.0));
+            if !division.may_divide(particle, low, high) {
+                for (x, y) in nodes {
+                    let shares = division.pair(particle, particle + Vector::new(x, y));
+                    prop_assert!(shares.len() == 1 && shares[0].crossed.is_empty(), "{shares:?}");
+                }
+            }
+        }
+
+        /// Truth: the difference quotient. How a share changes as its particle moves along the tip.
+        #[test]
+        fn the_gradient_of_a_share_is_its_slope(
+            ahead in -0.9 * SPACING..0.9 * SPACING, beside in 0.05_f64..0.4, turn in 0.0_f64..6.3,
+        ) {
+            // Away from the kinks of the ramp, at its ends and in its middle.
+            prop_assume!(ahead.abs() > 1e-3);
+            let rotation = nalgebra::Rotation2::new(turn);
+            let placed = |x: f64, y: f64| Point::new(5.0, 5.0) + rotation * Vector::new(x, y);
+            let points = vec![placed(-4.0, 0.0), placed(0.0, 0.0)];
+            let line = CrackLine { crack: 0, points, start: LineEnd::Tip, end: LineEnd::Tip };
+            let division = division(&[line], TipDivision::PartlyCut, TipCut::PLAIN);
+            let node = placed(-0.5, -0.3);
+            let far = |x: f64, y: f64| {
+                let shares = division.pair(placed(x, y), node);
+                let far = shares.into_iter().find(|s| !s.crossed.is_empty());
+                far.map_or((0.0, Vector::zeros()), |s| (s.fraction, s.gradient))
+            };
+            let step = 1e-6;
+            let along = (far(ahead + step, beside).0 - far(ahead - step, beside).0) / (2.0 * step);
+            let across = (far(ahead, beside + step).0 - far(ahead, beside - step).0) / (2.0 * step);
+            let expected = rotation * Vector::new(along, across);
+            let (fraction, gradient) = far(ahead, beside);
+            prop_assert!(fraction > 0.0 && fraction < 1.0, "{fraction}");
+            prop_assert!((gradient - expected).norm() < 1e-8, "{gradient} {expected}");
+        }
+    }
+}
