@@ -3,9 +3,9 @@
 
 mod common;
 mod contour;
+mod contract;
 mod directing;
 mod plane;
 mod scale;
 mod singular;
-mod threads;
 mod updated_solver;
