@@ -80,6 +80,10 @@ pub struct Report {
     pub particles: usize,
     /// Steps of all runs.
     pub steps: u64,
+    /// Measurements of tips in the runs that were followed step by step.
+    pub looks: u64,
+    /// Times that a crack which had grown was taken up in these runs.
+    pub recuts: u64,
     /// Wall time of all runs [s].
     pub seconds: f64,
     /// What a reader should know besides.
@@ -100,11 +104,13 @@ pub(crate) struct Tally<'a> {
     notes: Vec<String>,
     particles: usize,
     steps: u64,
+    looks: u64,
+    recuts: u64,
 }
 
 impl<'a> Tally<'a> {
     pub(crate) fn new(progress: Progress<'a>) -> Self {
-        Self { progress, rows: Vec::new(), notes: Vec::new(), particles: 0, steps: 0 }
+        Self { progress, rows: Vec::new(), notes: Vec::new(), particles: 0, steps: 0, looks: 0, recuts: 0 }
     }
 
     /// Says what is being computed now.
@@ -135,6 +141,8 @@ impl<'a> Tally<'a> {
             })?;
         }
         self.count(simulation.particles(), simulation.steps());
+        self.looks += simulation.counts().looks;
+        self.recuts += simulation.counts().recuts;
         Ok(())
     }
 
@@ -175,7 +183,7 @@ impl<'a> Tally<'a> {
     }
 
     pub(crate) fn finish(self, name: &str, about: &str, seconds: f64) -> Report {
-        let Self { rows, notes, particles, steps, .. } = self;
-        Report { name: name.into(), about: about.into(), rows, particles, steps, seconds, notes }
+        let Self { rows, notes, particles, steps, looks, recuts, .. } = self;
+        Report { name: name.into(), about: about.into(), rows, particles, steps, looks, recuts, seconds, notes }
     }
 }

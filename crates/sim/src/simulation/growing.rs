@@ -36,7 +36,7 @@ const STEPS_BETWEEN_LOOKS: u32 = 4;
 impl Simulation {
     /// One step and what it makes the cracks do. `is_last`: the last one of a frame, after which the records of all tips are wanted.
     pub(super) fn one_step(&mut self, time_step: f64, is_last: bool) -> Result<(), SimulationError> {
-        let Self { scene, elastic, solver, state, .. } = self;
+        let Self { scene, elastic, solver, state, counts, .. } = self;
         let gauge = Gauge { scene, elastic };
         let every = is_last || !scene.growth.enabled;
         let mut live = state.cracks.live();
@@ -55,6 +55,8 @@ impl Simulation {
         };
         solver.step(cracks, state.time, time_step, &mut observe)?;
         state.steps += 1;
+        counts.steps += 1;
+        counts.looks += live.len() as u64;
         for (&id, m) in live.iter().zip(&mut assessed) {
             let heading = growth::heading(&state.cracks, id, m, scene, elastic, time_step);
             if let Some(tip) = state.cracks.tip_mut(id) {
@@ -150,6 +152,7 @@ impl Simulation {
         self.state.cracks.set_end(id, advance.end);
         if !advance.points.is_empty() {
             self.solver.recut(&self.state.cracks, &[id]);
+            self.counts.recuts += 1;
         }
     }
 
@@ -239,10 +242,12 @@ impl Simulation {
         let body = self.state.cracks.of(id).body;
         let new = self.state.cracks.add(Crack::branch(id.crack, body, points, twin));
         self.solver.recut(&self.state.cracks, &[id, TipId::new(new, End::End)]);
+        self.counts.recuts += 1;
     }
 
     /// Measures a tip between steps.
-    fn assess(&self, id: TipId) -> Assessment {
+    fn assess(&mut self, id: TipId) -> Assessment {
+        self.counts.looks += 1;
         let gauge = Gauge { scene: &self.scene, elastic: &self.elastic };
         let cracks = &self.state.cracks;
         let mut assessed = growth::assess(&gauge.read(&*self.solver, cracks, id), &self.scene);

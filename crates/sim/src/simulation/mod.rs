@@ -11,9 +11,11 @@ use fissure_scene::{Energies, Formulation, Frame, Pose, Scene, TipRecord, Vector
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
+pub use counts::Counts;
 pub use estimate::Estimate;
 use std::sync::Arc;
 
+mod counts;
 mod estimate;
 #[cfg(test)]
 mod far_apart;
@@ -32,6 +34,7 @@ pub struct Simulation {
     state: RunState,
     /// Largest stable time step at the last look [s].
     stable_time_step: f64,
+    counts: Counts,
 }
 
 /// What a saved state holds besides the solver's own.
@@ -148,6 +151,7 @@ impl Simulation {
             },
             particles,
             stable_time_step: 0.0,
+            counts: Counts::default(),
         };
         simulation.split_fragments();
         let energies = simulation.solver.energies();
@@ -253,6 +257,11 @@ impl Simulation {
     /// Steps taken so far.
     pub fn steps(&self) -> u64 {
         self.state.steps
+    }
+
+    /// Work done by this process so far.
+    pub fn counts(&self) -> Counts {
+        self.counts
     }
 
     /// Time since the start [s].
@@ -438,6 +447,7 @@ impl Simulation {
             formulation: saved.formulation,
             state: saved.state,
             stable_time_step: 0.0,
+            counts: Counts::default(),
         })
     }
 }

@@ -25,6 +25,7 @@ impl Simulation {
         let mut steps = most_steps;
         for step in 1..=most_steps {
             self.solver.step(&self.state.cracks, time, time_step, &mut |_| ())?;
+            self.counts.steps += 1;
             let kinetic = self.solver.kinetic_energy();
             since += 1;
             round_peak = round_peak.max(kinetic);
