@@ -38,15 +38,22 @@ fn the_crack_crosses_the_plate_and_leaves_two_pieces() {
     assert!(solids.parts.iter().any(|(_, meshes)| !meshes.is_empty()));
 }
 
-/// Truth: symmetry. The mirrored scene gives the mirrored crack to within a cell.
+/// Truth: symmetry. It is exact as long as the crack rests and not when it runs: what lies exactly on a crack counts as
+/// above it, which the mirror image has below, and sums go from left to right. What that makes of the path grows along
+/// it. Measured: 0.06 cells down to mid height, 0.47 where the crack leaves the plate.
 #[test]
 fn a_mirrored_plate_cracks_along_the_mirrored_path() {
     let scene = example("pull-rotated", &COARSE).unwrap();
     let path = last_frame(&scene).unwrap().cracks[0].rest.clone();
     let mirrored: Vec<Point> =
         last_frame(&mirror(&scene)).unwrap().cracks[0].rest.iter().map(|p| Point::new(-p.x, p.y)).collect();
-    let worst = mirrored.iter().map(|&p| distance(p, &path)).fold(0.0, f64::max);
-    assert!(worst <= scene.cell_size, "the paths differ by {worst} m");
+    let drawn = scene.cracks[0].points.len();
+    assert_eq!(mirrored[..drawn], path[..drawn]);
+    let worst = |above: f64| {
+        let points = mirrored.iter().filter(|p| p.y > above);
+        points.map(|&p| distance(p, &path)).fold(0.0, f64::max) / scene.cell_size
+    };
+    assert!(worst(0.0) < 0.1 && worst(-11.0) < 0.5, "the paths differ by {} and {} cells", worst(0.0), worst(-11.0));
 }
 
 /// A crack that starts slanted turns perpendicular to the pull: it goes down, not on along its own line.
