@@ -5,6 +5,7 @@
 
 mod buried;
 mod course;
+mod drawn_tip;
 mod driving;
 mod groups;
 mod idle;

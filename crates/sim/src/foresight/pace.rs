@@ -1,6 +1,6 @@
 //! Cracks that are too fast for the frames.
 
-use super::course::DrawnTip;
+use super::drawn_tip::DrawnTip;
 use super::samples::two_digits;
 use crate::material::elastic::Elastic;
 use fissure_scene::{KeyPath, Scene, Vector, Warning};

@@ -1,7 +1,7 @@
 //! What a body hands on through the section that a crack lies in, and the stress intensity that this makes: handbook
 //! solutions.
 
-use super::course::DrawnTip;
+use super::drawn_tip::DrawnTip;
 use super::samples::{PlacedForce, Samples};
 use fissure_scene::{Point, Scene, Vector};
 use nalgebra::{Matrix3, Vector3};

@@ -1,6 +1,6 @@
 //! Whether any crack can reach its toughness.
 
-use super::course::DrawnTip;
+use super::drawn_tip::DrawnTip;
 use super::driving::stress_of_motions;
 use super::samples::{PlacedForce, Samples, two_digits};
 use super::section::{Section, balanced_forces};

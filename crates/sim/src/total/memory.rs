@@ -3,7 +3,7 @@
 use super::probes::Probe;
 use crate::grid::entries::Entry;
 use crate::grid::kernel;
-use crate::memory::{Amounts, Need};
+use crate::memory::amounts::{Amounts, Need};
 use fissure_scene::{Kernel, Scene};
 
 /// Lists of a number per field: mass and its inverse; x and y of displacement, velocity, acceleration and force.

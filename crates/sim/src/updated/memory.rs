@@ -5,7 +5,7 @@ use super::stencils::Raw;
 use super::{MaterialPoint, Motion, PlasticPart, Updated};
 use crate::grid::entries::Entry;
 use crate::grid::kernel;
-use crate::memory::{Amounts, Need};
+use crate::memory::amounts::{Amounts, Need};
 use fissure_scene::{Kernel, Matrix, Scene, Transfer, Vector};
 
 /// Lists of a number per field: mass; x and y of the velocities before and after.

@@ -1,0 +1,98 @@
+//! What can be read from a simulation between two steps.
+
+use super::{Counts, Simulation};
+use crate::boundary::collider::Obstacle;
+use crate::solver::Observed;
+use fissure_scene::{Energies, Formulation, Frame, Pose, Scene, TipRecord, Vector};
+
+impl Simulation {
+    /// The scene as it is simulated.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Whether the last frame has been reached.
+    pub fn is_finished(&self) -> bool {
+        self.state.frame_number >= self.scene.frames.last
+    }
+
+    /// The formulation in use; it changes in mid-run where the scene allows it.
+    pub fn formulation(&self) -> Formulation {
+        self.formulation
+    }
+
+    /// Number of the current frame.
+    pub fn frame_number(&self) -> i64 {
+        self.state.frame_number
+    }
+
+    /// Number of particles.
+    pub fn particles(&self) -> usize {
+        self.particles.len()
+    }
+
+    /// Steps taken so far.
+    pub fn steps(&self) -> u64 {
+        self.state.steps
+    }
+
+    /// Work done by this process so far.
+    pub fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// Time since the start [s].
+    pub fn time(&self) -> f64 {
+        self.state.time
+    }
+
+    /// What was measured last at each tip that is or was live, as in a frame.
+    pub fn tips(&self) -> Vec<TipRecord> {
+        let observed: &dyn Observed = &*self.solver;
+        let cracks = &self.state.cracks;
+        let mut tips = Vec::new();
+        for id in cracks.ids().filter(|&id| cracks.tip(id).is_some()) {
+            let (position, ahead) = observed.tip_now(cracks, id);
+            let direction = ahead.y.atan2(ahead.x);
+            tips.extend(cracks.of(id).record(id, position, direction, self.state.interval));
+        }
+        tips
+    }
+
+    /// Energy budget now, as in a frame.
+    pub fn energies(&self) -> Energies {
+        let energies = self.solver.energies();
+        Energies {
+            kinetic: energies.kinetic,
+            strain: energies.strain,
+            external_work: energies.external_work,
+            crack: self.state.crack_energy,
+        }
+    }
+
+    /// Linear [N s/m] and angular momentum about the origin [N s] now, per unit thickness.
+    pub fn momenta(&self) -> (Vector, f64) {
+        self.solver.momenta()
+    }
+
+    /// The current state as a frame.
+    pub fn frame(&self) -> Frame {
+        let mut particles = self.solver.particle_frame();
+        particles.piece.clone_from(&self.state.fragments);
+        Frame {
+            number: self.state.frame_number,
+            time: self.state.time,
+            particles,
+            outlines: self.solver.outline_frames(),
+            cracks: self.solver.crack_frames(&self.state.cracks),
+            tips: self.tips(),
+            energies: self.energies(),
+            colliders: self.collider_poses(),
+        }
+    }
+
+    fn collider_poses(&self) -> Vec<Pose> {
+        let time = self.state.time;
+        self.scene.colliders.iter().map(|c| Obstacle::new(c).at(time).pose()).collect()
+    }
+}

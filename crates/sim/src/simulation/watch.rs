@@ -1,0 +1,57 @@
+//! The watch over the energy of a run, and the names of the causes it fails by.
+
+use super::Simulation;
+use crate::{SimulationError, foresight};
+
+/// Energy a run may have beyond what it was given, as a part of what was exchanged. Kinetic and strain energy belong to moments half a step apart, so their
+/// sum ripples by a few per cent where short waves run; a run that fails gains without bound.
+const ENERGY_TOLERANCE: f64 = 0.1;
+
+impl Simulation {
+    /// Stops a run that has more energy than it was given.
+    pub(super) fn watch_energy(&mut self) -> Result<(), SimulationError> {
+        let now = self.solver.energies();
+        let held = now.kinetic + now.strain;
+        let given = self.state.first_energy + now.external_work;
+        // What has been exchanged in all, so that a body that only flies is judged by its own energy, and one that bounces not by the little that gravity has
+        // left it with at its highest point.
+        self.state.most_work = self.state.most_work.max(now.external_work.abs());
+        let scale = self.state.first_energy + self.state.most_work;
+        if held.is_finite() && held <= given + ENERGY_TOLERANCE * scale {
+            return Ok(());
+        }
+        let place = self.fastest_place();
+        Err(SimulationError::Unstable {
+            time: self.state.time,
+            x: place.x,
+            y: place.y,
+            cause: format!(
+                "kinetic and strain energy are {held:e} J/m, more than the {given:e} J/m that were there or came in by loads; use a smaller \
+                 `solver.courant`, a lower `growth.speed_limit` or weaker loads"
+            ),
+        })
+    }
+
+    /// The error of a run that has failed, with its cause where it is known: material that is strained beyond measure fails at any step.
+    pub(super) fn name_cause(&self, error: SimulationError) -> SimulationError {
+        match (error, foresight::overload(&self.scene, &self.elastic)) {
+            (
+                SimulationError::Unstable { time, x, y, .. } | SimulationError::OutOfRange { time, x, y, .. },
+                Some(cause),
+            ) => SimulationError::Unstable { time, x, y, cause },
+            (error, _) => error,
+        }
+    }
+
+    fn fastest_place(&self) -> fissure_scene::Point {
+        let particles = self.solver.particle_frame();
+        let mut fastest = (0.0, fissure_scene::Point::origin());
+        for (v, x) in particles.velocity.iter().zip(&particles.position) {
+            // A NaN counts as fastest of all.
+            if v.norm().total_cmp(&fastest.0).is_gt() {
+                fastest = (v.norm(), *x);
+            }
+        }
+        fastest.1
+    }
+}
