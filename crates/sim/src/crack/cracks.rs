@@ -33,7 +33,8 @@ impl TipId {
     }
 }
 
-/// All cracks. What looks at a tip is handed them and a [`TipId`]; numbers of cracks never change, new ones are added at the end.
+/// All cracks. What looks at a tip is handed them and a [`TipId`]; numbers of cracks never change, new ones are added
+/// at the end.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(crate) struct Cracks(Vec<Crack>);
 

@@ -340,8 +340,8 @@ struct PairCut {
     gradient: Vector,
 }
 
-/// Whether the bounding boxes of the segments `p`–`q` and `a`–`b` are disjoint. Asked before the exact test, because most
-/// segments in the neighbourhood of a particle are far from its line to a node.
+/// Whether the bounding boxes of the segments `p`–`q` and `a`–`b` are disjoint. Asked before the exact test, because
+/// most segments in the neighbourhood of a particle are far from its line to a node.
 #[inline]
 fn apart(p: Point, q: Point, a: Point, b: Point) -> bool {
     p.x.max(q.x) < a.x.min(b.x)

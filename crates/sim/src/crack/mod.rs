@@ -252,9 +252,9 @@ impl Crack {
         self.tips.iter().flatten().try_for_each(Tip::check)
     }
 
-    /// The points as lines were last cut for them. A tip on its way through an increment is where it was at the beginning
-    /// of it: were what is cut anew for other cracks cut for the tip as it is now, nodes at the edge of what is cut anew
-    /// would be split by halves.
+    /// The points as lines were last cut for them. A tip on its way through an increment is where it was at the
+    /// beginning of it: were what is cut anew for other cracks cut for the tip as it is now, nodes at the edge of what
+    /// is cut anew would be split by halves.
     pub(crate) fn points_as_cut(&self) -> Vec<Point> {
         let mut points = self.points.clone();
         let last = points.len() - 1;

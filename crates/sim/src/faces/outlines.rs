@@ -48,8 +48,8 @@ impl<V: Vertex> Outlines<V> {
         Self { rings: scene.bodies.iter().flat_map(|body| body.region.rings().map(lay)).collect() }
     }
 
-    /// Doubles the outline where a crack mouths at it, with its `end` at `place`, at rest [m]: the two new vertices are the
-    /// ends of its `faces`, above and below.
+    /// Doubles the outline where a crack mouths at it, with its `end` at `place`, at rest [m]: the two new vertices are
+    /// the ends of its `faces`, above and below.
     pub(crate) fn open_mouth(&mut self, place: Point, end: End, faces: [V; 2], cell_size: f64) {
         let mut best: Option<(f64, usize, usize)> = None;
         for (index, ring) in self.rings.iter().enumerate() {

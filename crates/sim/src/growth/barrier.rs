@@ -6,7 +6,8 @@ use crate::crack::cracks::{Cracks, ENDS, TipId};
 use fissure_plane::{Point, Region, Vector, nearest_on_segment, orientation, segments_touch};
 use fissure_scene::{CrackEnd, End, TipState};
 
-/// Its own crack, the one it branched from and its branches count as beside a tip only this many cells from where they part.
+/// Its own crack, the one it branched from and its branches count as beside a tip only this many cells from where they
+/// part.
 const PARTED: f64 = 8.0;
 
 /// A place where a tip ends.
@@ -62,9 +63,11 @@ pub(super) fn first_barrier(cracks: &Cracks, id: TipId, region: &Region, from: P
     nearest.map(|n| n.1)
 }
 
-/// The place to end for a tip beside another crack, or beside an older part of its own, nearer than a last ligament; none when there is no such crack.
+/// The place to end for a tip beside another crack, or beside an older part of its own, nearer than a last ligament;
+/// none when there is no such crack.
 ///
-/// Two cracks side by side within a cell leave a strip that the grid does not resolve, of fields with next to no mass; a real one breaks.
+/// Two cracks side by side within a cell leave a strip that the grid does not resolve, of fields with next to no mass;
+/// a real one breaks.
 pub(super) fn beside(cracks: &Cracks, id: TipId, toward: Vector, h: f64) -> Option<Point> {
     let crack = cracks.of(id);
     let from = cracks.position(id);
@@ -103,7 +106,8 @@ pub(super) fn beside(cracks: &Cracks, id: TipId, toward: Vector, h: f64) -> Opti
     nearest.map(|n| n.1)
 }
 
-/// Where the way from `p` to `q` meets the segment `a`–`b`: (fraction of the way, place), the start of the way left out.
+/// Where the way from `p` to `q` meets the segment `a`–`b`: (fraction of the way, place), the start of the way left
+/// out.
 fn intersection(p: Point, q: Point, a: Point, b: Point) -> Option<(f64, Point)> {
     if p == q || !segments_touch(p, q, a, b) {
         return None;

@@ -1,7 +1,8 @@
 //! Division of a tip into two.
 //!
-//! A tip that is given enough energy for two may divide: when J reaches a multiple of G_c = K_c²/E'. Where real cracks do so depends on the process zone,
-//! which a sharp crack does not have; so the multiple, the angle and the distance are the scene's.
+//! A tip that is given enough energy for two may divide: when J reaches a multiple of G_c = K_c²/E'. Where real cracks
+//! do so depends on the process zone, which a sharp crack does not have; so the multiple, the angle and the distance
+//! are the scene's.
 
 use super::advance::LAST_LIGAMENT;
 use super::barrier::first_barrier;
@@ -12,11 +13,13 @@ use crate::material::elastic::Elastic;
 use crate::tip::frame::turned;
 use fissure_scene::{Point, Scene};
 
-/// Length of new branches, in cells. At the default angle their tips are then 3.6 cells apart: each has the smallest radius of an integral for itself.
-/// With 2 cells each tip feels the faces of the other, and the branches turn back and meet.
+/// Length of new branches, in cells. At the default angle their tips are then 3.6 cells apart: each has the smallest
+/// radius of an integral for itself. With 2 cells each tip feels the faces of the other, and the branches turn back and
+/// meet.
 const FIRST_LENGTH: f64 = 4.0;
 
-/// The points of the two branches of a tip, from the tip on and without it, left and right as seen along the crack; none when the tip does not divide.
+/// The points of the two branches of a tip, from the tip on and without it, left and right as seen along the crack;
+/// none when the tip does not divide.
 pub(crate) fn branches(
     cracks: &Cracks,
     id: TipId,

@@ -17,8 +17,9 @@ fn asked(cracks: &Cracks, id: TipId, assessed: &Assessment, scene: &Scene) -> Ve
 
 /// The heading of a tip after one more measurement, `time_step` [s] after the last one.
 ///
-/// Every increment sends out waves, and the ratio of the modes swings with them at a period that is the lattice's, not the body's. A running tip follows
-/// the mean over the time that a shear wave takes for a few cells; a resting one has no waves of its own and starts as the stress is.
+/// Every increment sends out waves, and the ratio of the modes swings with them at a period that is the lattice's, not
+/// the body's. A running tip follows the mean over the time that a shear wave takes for a few cells; a resting one has
+/// no waves of its own and starts as the stress is.
 pub(crate) fn heading(
     cracks: &Cracks,
     id: TipId,
@@ -42,8 +43,9 @@ pub(crate) fn heading(
 
 /// Direction of the last segment of a crack with a kink nearer to its tip than `over` [m].
 ///
-/// What is measured around such a tip is still the field of the crack before the kink, seen along a chord that has turned by a part of it. A crack that follows
-/// it turns on: under pure shear from 70 to 92° within the first cell and a half, whatever the size of the cells, before it comes back to 73°.
+/// What is measured around such a tip is still the field of the crack before the kink, seen along a chord that has
+/// turned by a part of it. A crack that follows it turns on: under pure shear from 70 to 92° within the first cell and
+/// a half, whatever the size of the cells, before it comes back to 73°.
 fn after_kink(cracks: &Cracks, id: TipId, over: f64) -> Option<Vector> {
     let points = &cracks.of(id).points;
     let n = points.len();
@@ -71,7 +73,8 @@ pub(super) fn physical_way(cracks: &Cracks, id: TipId, assessed: &Assessment, sc
     tip.and_then(|t| t.heading.try_normalize(0.0)).unwrap_or_else(|| asked(cracks, id, assessed, scene))
 }
 
-/// The direction a tip takes (unit vector, at rest): its heading, turned to what is weak, then towards its guide by the strength of the guide.
+/// The direction a tip takes (unit vector, at rest): its heading, turned to what is weak, then towards its guide by the
+/// strength of the guide.
 pub(super) fn way(cracks: &Cracks, id: TipId, assessed: &Assessment, scene: &Scene) -> Vector {
     let physical = super::seeking::seek(cracks, id, physical_way(cracks, id, assessed, scene), scene);
     let Some(guide) = cracks.tip(id).and_then(|t| t.guide.as_ref()) else { return physical };

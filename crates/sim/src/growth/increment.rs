@@ -1,4 +1,5 @@
-//! The next increment of a tip: along its guide, or the way the stress asks for, or the rest of the way to what is near.
+//! The next increment of a tip: along its guide, or the way the stress asks for, or the rest of the way to what is
+//! near.
 
 use super::advance::{Advance, LAST_LIGAMENT};
 use super::barrier::{beside, first_barrier};

@@ -8,8 +8,8 @@ use crate::crack::{Assessment, DIRECTION_LENGTH};
 use crate::tip::gauge::Reading;
 use fissure_scene::{Scene, Vector};
 
-/// What a reading means for growth: direction and load by the criterion. The toughness is left 0: it is that of what lies ahead, and which way that is
-/// [`heading`](super::heading()) may have to say first; see [`toughness_ahead`].
+/// What a reading means for growth: direction and load by the criterion. The toughness is left 0: it is that of what
+/// lies ahead, and which way that is [`heading`](super::heading()) may have to say first; see [`toughness_ahead`].
 pub(crate) fn assess(reading: &Reading, scene: &Scene) -> Assessment {
     let criterion = criterion();
     let kink_angle = criterion.kink_angle(&reading.decisive, scene.growth.bending);
@@ -48,13 +48,15 @@ pub(crate) fn wants_to_grow(
     equivalent(cracks, id, assessed, scene) >= needed && needed > 0.0
 }
 
-/// Fracture toughness of what the next increment would break [Pa·√m]: of what lies in its middle, in the direction the tip takes.
+/// Fracture toughness of what the next increment would break [Pa·√m]: of what lies in its middle, in the direction the
+/// tip takes.
 pub(crate) fn toughness_ahead(cracks: &Cracks, id: TipId, assessed: &Assessment, scene: &Scene) -> f64 {
     let half = 0.5 * scene.growth.increment * scene.cell_size;
     toughness_at(cracks.of(id), cracks.position(id) + way(cracks, id, assessed, scene) * half, scene)
 }
 
-/// K_eq [Pa·√m] for the direction the tip would take: what was measured for the physical direction, times how much less that one gets of it.
+/// K_eq [Pa·√m] for the direction the tip would take: what was measured for the physical direction, times how much less
+/// that one gets of it.
 fn equivalent(cracks: &Cracks, id: TipId, assessed: &Assessment, scene: &Scene) -> f64 {
     let guide = cracks.tip(id).and_then(|t| t.guide.as_ref());
     let has_guide = guide.is_some_and(|g| g.strength() > 0.0);
@@ -77,8 +79,9 @@ pub(crate) enum Cost {
     Energy(f64),
 }
 
-/// What growth costs a tip. In energy: of what is released now, the part that is needed. K_eq² goes with the energy that is released, whatever the mode
-/// and the direction, so at K_eq = K_c this is all of it, and in mode I it is always K_c²/E'.
+/// What growth costs a tip. In energy: of what is released now, the part that is needed. K_eq² goes with the energy
+/// that is released, whatever the mode and the direction, so at K_eq = K_c this is all of it, and in mode I it is
+/// always K_c²/E'.
 pub(crate) fn cost(cracks: &Cracks, id: TipId, assessed: &Assessment, scene: &Scene, time: f64) -> Cost {
     let tip = cracks.tip(id);
     if let Some(due) = tip.and_then(|t| t.guide.as_ref()?.due(t.grown, time)) {

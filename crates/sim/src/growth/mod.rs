@@ -1,10 +1,11 @@
 //! When and where a crack grows, and how it ends.
 //!
-//! A tip begins to grow when K_eq in its direction reaches the toughness; K_I and K_II are scaled so that they agree with
-//! J. In the total formulation it then slides through its increment as far as the energy it releases pays for, so that
-//! its speed follows from the energy balance; in the updated formulation it jumps by whole increments. A limit keeps it
-//! below a fraction of c_R. Direction: maximum hoop stress, a guide, or a blend of both; a guide with a schedule also
-//! says when. Close to a ring or another crack the tip goes the rest of the way at once and ends exactly there.
+//! A tip begins to grow when K_eq in its direction reaches the toughness; K_I and K_II are scaled so that they agree
+//! with J. In the total formulation it then slides through its increment as far as the energy it releases pays for, so
+//! that its speed follows from the energy balance; in the updated formulation it jumps by whole increments. A limit
+//! keeps it below a fraction of c_R. Direction: maximum hoop stress, a guide, or a blend of both; a guide with a
+//! schedule also says when. Close to a ring or another crack the tip goes the rest of the way at once and ends exactly
+//! there.
 
 mod advance;
 mod barrier;

@@ -1,4 +1,5 @@
-//! Cracks seek what is weak: where toughness varies, a tip takes the direction in which it has the most for what it costs.
+//! Cracks seek what is weak: where toughness varies, a tip takes the direction in which it has the most for what it
+//! costs.
 
 use super::criterion::criterion;
 use crate::crack::Crack;
@@ -10,7 +11,8 @@ use fissure_scene::{Point, Scene, Vector};
 const STEPS: i32 = 12;
 /// ... each of this size [rad]: 5 degrees.
 const STEP: f64 = 0.087_266_462_599_716_47;
-/// A direction is judged by the mean toughness over this length, in cells: two particle spacings, of which painted toughness knows one.
+/// A direction is judged by the mean toughness over this length, in cells: two particle spacings, of which painted
+/// toughness knows one.
 const REACH: f64 = 1.0;
 
 /// Whether the toughness of the body of a crack is not the same everywhere.
@@ -24,9 +26,11 @@ pub(super) fn toughness_at(crack: &Crack, place: Point, scene: &Scene) -> f64 {
     scene.materials[body.material_at(place)].fracture_toughness * scene.toughness_factor(crack.body as usize, place)
 }
 
-/// The direction (unit vector, at rest) with the highest ratio of hoop stress to toughness, for a tip that the stress opens along `physical`.
+/// The direction (unit vector, at rest) with the highest ratio of hoop stress to toughness, for a tip that the stress
+/// opens along `physical`.
 ///
-/// Of equal ratios the one nearest to `physical` is taken, so that a toughness that is the same all around changes nothing.
+/// Of equal ratios the one nearest to `physical` is taken, so that a toughness that is the same all around changes
+/// nothing.
 pub(super) fn seek(cracks: &Cracks, id: TipId, physical: Vector, scene: &Scene) -> Vector {
     let crack = cracks.of(id);
     if !is_varied(crack, scene) {

@@ -38,7 +38,8 @@ fn rotation_and_reflection(h: &Matrix) -> [[f64; 2]; 2] {
     [rotation, reflection]
 }
 
-/// The principal stretches of F = I + `h`, the largest first [–]: its singular values; the smaller carries the sign of det F.
+/// The principal stretches of F = I + `h`, the largest first [–]: its singular values; the smaller carries the sign of
+/// det F.
 #[inline]
 pub(crate) fn principal_stretches(h: &Matrix) -> [f64; 2] {
     let [q, p] = rotation_and_reflection(h).map(|[x, y]| x.hypot(y));

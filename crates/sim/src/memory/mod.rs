@@ -16,12 +16,12 @@ const PROGRAM: f64 = 10.5 * MEBIBYTE;
 /// What the division keeps for each cell near a crack: its entry in the map, and a list of a few segments [bytes].
 const NEAR_CELL: f64 = 128.0;
 
-/// What each cell of growth adds: particles cut anew, eight points of either face with their stencils, in states and frames too, and
-/// their part in making a mesh [bytes]. 30 to 65 kB were taken where cracks grow by 60 to 500 cells.
+/// What each cell of growth adds: particles cut anew, eight points of either face with their stencils, in states and
+/// frames too, and their part in making a mesh [bytes]. 30 to 65 kB were taken where cracks grow by 60 to 500 cells.
 const GROWN_CELL: f64 = 45e3;
 
-/// What the allocator keeps of what it was given back, as a part of what is needed, and at most [bytes]: large pieces go back to the
-/// system. Gaps come up by and by, within some twenty frames.
+/// What the allocator keeps of what it was given back, as a part of what is needed, and at most [bytes]: large pieces
+/// go back to the system. Gaps come up by and by, within some twenty frames.
 const KEPT_PART: f64 = 0.25;
 const KEPT_AT_MOST: f64 = 7.0 * MEBIBYTE;
 const FRAMES_TO_GAPS: f64 = 24.0;

@@ -6,12 +6,14 @@ use crate::crack::Crack;
 use fissure_scene::Formulation;
 use std::ops::ControlFlow;
 
-/// Largest fraction of the stability limit with contact. A contact sets a velocity to zero in mid-oscillation; from rest at an amplitude A the next
-/// leapfrog step goes to (1 − (ωΔt)²) A, which is no larger than A only if ωΔt ≤ √2, that is Δt at most 1/√2 of the limit 2/ω.
+/// Largest fraction of the stability limit with contact. A contact sets a velocity to zero in mid-oscillation; from
+/// rest at an amplitude A the next leapfrog step goes to (1 − (ωΔt)²) A, which is no larger than A only if ωΔt ≤ √2,
+/// that is Δt at most 1/√2 of the limit 2/ω.
 const CONTACT_COURANT: f64 = 0.7;
 
-/// Largest fraction of the stability limit while a tip may grow: between two looks at the limit a tip passes through cells whose fields are stiffer for
-/// their mass than those of the cells it came from. Measured on a plate pulled until a crack crosses it: 0.5 and below hold, 0.7 fails in some runs.
+/// Largest fraction of the stability limit while a tip may grow: between two looks at the limit a tip passes through
+/// cells whose fields are stiffer for their mass than those of the cells it came from. Measured on a plate pulled until
+/// a crack crosses it: 0.5 and below hold, 0.7 fails in some runs.
 const GROWTH_COURANT: f64 = 0.5;
 
 /// Steps between two looks at a stability limit that moves with the material.
@@ -42,8 +44,9 @@ impl Simulation {
         solver.time_step.unwrap_or(solver.courant.min(most) * self.stable_time_step)
     }
 
-    /// Runs to the next frame. `watch` is called after every step; when it breaks, the run stops in mid-frame and `false` is returned: the
-    /// state is then good for nothing but being dropped, a saved state of the last frame goes on.
+    /// Runs to the next frame. `watch` is called after every step; when it breaks, the run stops in mid-frame and
+    /// `false` is returned: the state is then good for nothing but being dropped, a saved state of the last frame goes
+    /// on.
     ///
     /// # Errors
     /// When the run becomes unstable; the frames so far stay valid.
@@ -51,7 +54,8 @@ impl Simulation {
         self.advance_observed(&mut |_, progress| watch(progress))
     }
 
-    /// As [`Simulation::advance`]; `watch` also sees the state. What was measured at the tips belongs to the beginning of the step.
+    /// As [`Simulation::advance`]; `watch` also sees the state. What was measured at the tips belongs to the beginning
+    /// of the step.
     ///
     /// # Errors
     /// As [`Simulation::advance`].
@@ -76,8 +80,8 @@ impl Simulation {
         Ok(true)
     }
 
-    /// Runs to the time `next` [s], or to where the formulation or the length of the steps has to change. `frame_steps` counts the steps of the frame. `false`:
-    /// `watch` has broken the run.
+    /// Runs to the time `next` [s], or to where the formulation or the length of the steps has to change. `frame_steps`
+    /// counts the steps of the frame. `false`: `watch` has broken the run.
     fn run_to(
         &mut self,
         next: f64,

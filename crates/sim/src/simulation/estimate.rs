@@ -1,4 +1,5 @@
-//! What a scene will cost, from counts alone: the same scene has the same estimate every time, and none fails that would run.
+//! What a scene will cost, from counts alone: the same scene has the same estimate every time, and none fails that
+//! would run.
 
 use super::Simulation;
 use crate::foresight::Course;
@@ -24,12 +25,13 @@ pub struct Estimate {
     pub memory: u64,
     /// Length by which cracks are expected to grow [m], roughly.
     pub growth: f64,
-    /// Wall time of the solver with the writing of its frames [s], on the two-core machine that the costs of its parts were measured on.
+    /// Wall time of the solver with the writing of its frames [s], on the two-core machine that the costs of its parts
+    /// were measured on.
     pub seconds: f64,
 }
 
-/// Seconds that parts of a run take. Fitted to the 13 examples on one core of a server of 2023 (`fissure sim --threads 1`); their total is met within
-/// a factor of two there.
+/// Seconds that parts of a run take. Fitted to the 13 examples on one core of a server of 2023 (`fissure sim --threads
+/// 1`); their total is met within a factor of two there.
 struct Costs {
     /// A step of a particle in the total formulation.
     total_step: f64,

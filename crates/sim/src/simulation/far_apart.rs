@@ -23,7 +23,8 @@ fn plate(formulation: Formulation) -> Scene {
     scene
 }
 
-/// Truth: the plate alone, bit for bit. The other one lies above and to the right, so that places are counted from the same corner, and flies away.
+/// Truth: the plate alone, bit for bit. The other one lies above and to the right, so that places are counted from the
+/// same corner, and flies away.
 #[test]
 fn a_body_far_away_changes_no_bit() {
     for formulation in [Formulation::Total, Formulation::Updated] {

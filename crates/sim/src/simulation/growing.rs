@@ -9,7 +9,8 @@ use crate::solver::Observed;
 use crate::tip::gauge::Gauge;
 use fissure_scene::{CrackEnd, End, Point, TipState, Vector};
 
-/// Increments one tip may take in one step: with a step of 0.9 h/c_d and quarter cells, more would be faster than any wave.
+/// Increments one tip may take in one step: with a step of 0.9 h/c_d and quarter cells, more would be faster than any
+/// wave.
 const MOST_INCREMENTS_PER_STEP: usize = 4;
 
 /// Part of an increment that a tip takes at once to give it its direction.
@@ -30,11 +31,13 @@ const ARREST_STEPS: u32 = 50;
 
 /// A resting tip whose K_eq is below this part of the toughness ...
 const FAR_FROM_GROWTH: f64 = 0.7;
-/// ... is looked at only once in so many steps: with a step of half a cell's wave time or less a wave goes two cells in them, half a radius of the integral.
+/// ... is looked at only once in so many steps: with a step of half a cell's wave time or less a wave goes two cells in
+/// them, half a radius of the integral.
 const STEPS_BETWEEN_LOOKS: u32 = 4;
 
 impl Simulation {
-    /// One step and what it makes the cracks do. `is_last`: the last one of a frame, after which the records of all tips are wanted.
+    /// One step and what it makes the cracks do. `is_last`: the last one of a frame, after which the records of all
+    /// tips are wanted.
     pub(super) fn one_step(&mut self, time_step: f64, is_last: bool) -> Result<(), SimulationError> {
         let Self { scene, elastic, solver, state, counts, .. } = self;
         let gauge = Gauge { scene, elastic };
@@ -130,7 +133,8 @@ impl Simulation {
         }
     }
 
-    /// Sets a tip on its way through an increment, or at its end where tips only jump or the increment is not like others.
+    /// Sets a tip on its way through an increment, or at its end where tips only jump or the increment is not like
+    /// others.
     fn begin_increment(&mut self, id: TipId, advance: &Advance, assessed: &Assessment) {
         let from = self.state.cracks.position(id);
         match advance.points[..] {
@@ -158,7 +162,8 @@ impl Simulation {
 
     /// Lets a tip run through its increment as far as it can pay. Whether it has come to the end of it.
     ///
-    /// What the tip takes out of the body on the way is what the way costs: the energy balance holds over every stretch, not only at the moment when growth begins.
+    /// What the tip takes out of the body on the way is what the way costs: the energy balance holds over every
+    /// stretch, not only at the moment when growth begins.
     fn slide(&mut self, id: TipId, assessed: &Assessment, time: f64) -> bool {
         let cracks = &self.state.cracks;
         let Some(tip) = cracks.tip(id) else { return false };
@@ -266,7 +271,8 @@ impl Simulation {
     }
 }
 
-/// The farthest way, up to `most`, at the end of which `balance` is not negative. The balance is concave: softening gives less the farther it goes.
+/// The farthest way, up to `most`, at the end of which `balance` is not negative. The balance is concave: softening
+/// gives less the farther it goes.
 fn affordable(most: f64, balance: impl Fn(f64) -> f64) -> f64 {
     if most <= 0.0 {
         return 0.0;

@@ -4,16 +4,18 @@ use super::Simulation;
 use crate::SimulationError;
 use crate::solver::Solver;
 
-/// Steps between two looks of the dynamic relaxation at least: over fewer the ripple of the shortest waves shows instead of the motion that is left.
+/// Steps between two looks of the dynamic relaxation at least: over fewer the ripple of the shortest waves shows
+/// instead of the motion that is left.
 const RELAXATION_ROUND: u32 = 12;
 
 impl Simulation {
     /// Brings the state to rest under the loads of the present time; cracks do not grow.
     ///
-    /// Dynamic relaxation (Underwood 1983): velocities are damped at twice the frequency of the motion that is left, from its Rayleigh quotient, so that
-    /// the slowest motion comes to rest as fast as it can. Where the formulation cannot tell that frequency, velocities are set to zero at every
-    /// peak of the kinetic energy instead. Stops when no more than `tolerance` of the strain energy is left as kinetic energy over a whole round, or
-    /// after `most_steps`. Returns the number of steps.
+    /// Dynamic relaxation (Underwood 1983): velocities are damped at twice the frequency of the motion that is left,
+    /// from its Rayleigh quotient, so that the slowest motion comes to rest as fast as it can. Where the formulation
+    /// cannot tell that frequency, velocities are set to zero at every peak of the kinetic energy instead. Stops when
+    /// no more than `tolerance` of the strain energy is left as kinetic energy over a whole round, or after
+    /// `most_steps`. Returns the number of steps.
     ///
     /// # Errors
     /// As [`Simulation::advance`].

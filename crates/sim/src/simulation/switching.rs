@@ -46,7 +46,8 @@ mod tests {
         frame.particles.velocity.iter().enumerate().map(|(p, v)| v * mass(p)).sum()
     }
 
-    /// Truth: conservation. Momentum and deformation to round-off; kinetic energy only falls, here by less than a per cent.
+    /// Truth: conservation. Momentum and deformation to round-off; kinetic energy only falls, here by less than a per
+    /// cent.
     #[test]
     fn a_switch_keeps_momentum_and_strain() {
         let mut simulation = Simulation::new(&block()).unwrap();
@@ -78,7 +79,8 @@ mod tests {
         assert!(simulation.frame().particles.deformation_gradient.iter().all(still));
     }
 
-    /// A block that is thrown against a wall faster than the total formulation can follow goes on in the other one; asked to stop, it stops by name.
+    /// A block that is thrown against a wall faster than the total formulation can follow goes on in the other one;
+    /// asked to stop, it stops by name.
     #[test]
     fn a_crash_goes_on_in_the_updated_formulation() {
         let mut scene = free_body(rectangle([0.0, 0.0], [2.0, 2.0]), 0.125);

@@ -3,8 +3,9 @@
 use super::Simulation;
 use crate::{SimulationError, foresight};
 
-/// Energy a run may have beyond what it was given, as a part of what was exchanged. Kinetic and strain energy belong to moments half a step apart, so their
-/// sum ripples by a few per cent where short waves run; a run that fails gains without bound.
+/// Energy a run may have beyond what it was given, as a part of what was exchanged. Kinetic and strain energy belong to
+/// moments half a step apart, so their sum ripples by a few per cent where short waves run; a run that fails gains
+/// without bound.
 const ENERGY_TOLERANCE: f64 = 0.1;
 
 impl Simulation {
@@ -13,8 +14,8 @@ impl Simulation {
         let now = self.solver.energies();
         let held = now.kinetic + now.strain;
         let given = self.state.first_energy + now.external_work;
-        // What has been exchanged in all, so that a body that only flies is judged by its own energy, and one that bounces not by the little that gravity has
-        // left it with at its highest point.
+        // What has been exchanged in all, so that a body that only flies is judged by its own energy, and one that
+        // bounces not by the little that gravity has left it with at its highest point.
         self.state.most_work = self.state.most_work.max(now.external_work.abs());
         let scale = self.state.first_energy + self.state.most_work;
         if held.is_finite() && held <= given + ENERGY_TOLERANCE * scale {
@@ -32,7 +33,8 @@ impl Simulation {
         })
     }
 
-    /// The error of a run that has failed, with its cause where it is known: material that is strained beyond measure fails at any step.
+    /// The error of a run that has failed, with its cause where it is known: material that is strained beyond measure
+    /// fails at any step.
     pub(super) fn name_cause(&self, error: SimulationError) -> SimulationError {
         match (error, foresight::overload(&self.scene, &self.elastic)) {
             (

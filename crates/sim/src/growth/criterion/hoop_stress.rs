@@ -1,7 +1,7 @@
 //! Maximum hoop stress (Erdogan & Sih 1963).
 //!
-//! A crack goes on in the direction in which the hoop stress around its tip is highest, when that stress reaches what mode
-//! I at K_Ic has.
+//! A crack goes on in the direction in which the hoop stress around its tip is highest, when that stress reaches what
+//! mode I at K_Ic has.
 
 use super::Criterion;
 use crate::StressIntensity;
@@ -9,18 +9,20 @@ use crate::StressIntensity;
 impl StressIntensity {
     /// Kink angle θ_c of maximum hoop stress (Erdogan & Sih 1963) [rad], positive counter-clockwise.
     ///
-    /// θ = 2 atan2(-2 K_II, K_I + √(K_I² + 8 K_II²)), with K_II scaled by `bending`: 0 straight, 1 physical. Pure shear gives ∓70.53°.
-    /// A closed crack (K_I < 0) counts as K_I = 0; without any load the angle is 0.
+    /// θ = 2 atan2(-2 K_II, K_I + √(K_I² + 8 K_II²)), with K_II scaled by `bending`: 0 straight, 1 physical. Pure shear
+    /// gives ∓70.53°. A closed crack (K_I < 0) counts as K_I = 0; without any load the angle is 0.
     pub fn kink_angle(&self, bending: f64) -> f64 {
         let (k_1, k_2) = (self.mode_1.max(0.0), bending * self.mode_2);
         // Adding zero turns -0 into 0.
         2.0 * (-2.0 * k_2).atan2(k_1 + k_1.hypot(8.0_f64.sqrt() * k_2)) + 0.0
     }
 
-    /// Equivalent stress intensity K_eq(θ) = cos(θ/2) [K_I cos²(θ/2) - (3/2) K_II sin θ] [Pa·√m], to be compared with K_Ic.
+    /// Equivalent stress intensity K_eq(θ) = cos(θ/2) [K_I cos²(θ/2) - (3/2) K_II sin θ] [Pa·√m], to be compared with
+    /// K_Ic.
     ///
-    /// The hoop stress at `angle` [rad] times √(2πr); at the kink angle (bending 1) its maximum. The thesis' eq. 34 has the opposite sign of
-    /// K_II, by which a crack under shear never starts. A closed crack (K_I < 0) counts as K_I = 0.
+    /// The hoop stress at `angle` [rad] times √(2πr); at the kink angle (bending 1) its maximum. The thesis' eq. 34 has
+    /// the opposite sign of K_II, by which a crack under shear never starts. A closed crack (K_I < 0) counts as K_I =
+    /// 0.
     pub fn equivalent(&self, angle: f64) -> f64 {
         let half_cosine = (0.5 * angle).cos();
         half_cosine * (self.mode_1.max(0.0) * half_cosine * half_cosine - 1.5 * self.mode_2 * angle.sin())

@@ -1,4 +1,5 @@
-//! The criterion of growth: the three questions that all of growth asks, each criterion answering them in a file of its own.
+//! The criterion of growth: the three questions that all of growth asks, each criterion answering them in a file of its
+//! own.
 
 mod hoop_stress;
 
@@ -11,8 +12,8 @@ pub(super) trait Criterion {
     /// `bending` scales what turns a crack: 0 straight on, 1 physical.
     fn kink_angle(&self, load: &StressIntensity, bending: f64) -> f64;
 
-    /// What `load` amounts to in the direction `angle` [rad], as a stress intensity of mode I [Pa·√m], to be compared with
-    /// K_Ic.
+    /// What `load` amounts to in the direction `angle` [rad], as a stress intensity of mode I [Pa·√m], to be compared
+    /// with K_Ic.
     fn equivalent(&self, load: &StressIntensity, angle: f64) -> f64;
 
     /// Part of the load in the best direction that is left at an angle [rad] from it.
