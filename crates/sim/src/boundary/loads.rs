@@ -55,8 +55,8 @@ fn by_volume(scene: &Scene, particles: &Particles, selection: &Selection, total:
     selected.into_iter().map(|p| PointForce { place: ForcePlace::Particle(p), force: force(p) }).collect()
 }
 
-/// A traction on the selected pieces of the outlines, by their length: a force in the middle of each half cell, so that every node gets the load
-/// of its hat.
+/// A traction on the selected pieces of the outlines, by their length: a force in the middle of each half cell, so that
+/// every node gets the load of its hat.
 fn along_outlines(scene: &Scene, spacing: f64, selection: &Selection, traction: Vector) -> Vec<PointForce> {
     let mut forces = Vec::new();
     for [a, b] in Selector::new(scene, selection).pieces(scene) {
@@ -81,7 +81,8 @@ mod tests {
     use crate::test_scenes::{always, free_body, rectangle};
     use fissure_scene::BoxSide;
 
-    /// Truth: force and moment of the load as the scene says it, on a square of 1.3 m whose edge is no multiple of the spacing.
+    /// Truth: force and moment of the load as the scene says it, on a square of 1.3 m whose edge is no multiple of the
+    /// spacing.
     #[test]
     fn forces_add_up_to_their_load() {
         let mut scene = free_body(rectangle([0.0, 0.0], [1.3, 1.3]), 0.05);

@@ -169,8 +169,8 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    /// Truth: the drawing. Node 7 lies between crack 0 above it and crack 1 below it: three fields, of which the outer two see each other across both
-    /// cracks and do not face.
+    /// Truth: the drawing. Node 7 lies between crack 0 above it and crack 1 below it: three fields, of which the outer
+    /// two see each other across both cracks and do not face.
     #[test]
     fn fields_face_across_one_crack() {
         let mut fields = Fields::new(10);

@@ -1,8 +1,11 @@
 //! What the solver holds, counted before it is there.
 
-use super::faces::Tracer;
-use super::stencils::Raw;
-use super::{MaterialPoint, Motion, PlasticPart, Updated};
+use super::Updated;
+use super::cut::Raw;
+use super::plastic::PlasticPart;
+use super::points::{MaterialPoint, Motion};
+use super::setup::{has_affine, is_plastic};
+use super::tracers::Tracer;
 use crate::grid::entries::Entry;
 use crate::grid::kernel;
 use crate::memory::amounts::{Amounts, Need};
@@ -10,6 +13,9 @@ use fissure_scene::{Kernel, Matrix, Scene, Transfer, Vector};
 
 /// Lists of a number per field: mass; x and y of the velocities before and after.
 const NUMBERS_PER_FIELD: usize = 1 + 2 * 2;
+
+/// Marks per node in search of contact: whether it has been visited, and whether its stencils reach a divided node.
+const MARKS_PER_NODE: usize = 2;
 
 impl Updated {
     /// What a run of `scene` holds.
@@ -20,15 +26,15 @@ impl Updated {
         // Velocities that go to the grid once more.
         let sends_back = settings.transfer == Transfer::Xpic || settings.kernel == Kernel::Bilinear;
         let saved = size_of::<MaterialPoint>()
-            + if_any(settings.transfer == Transfer::Apic, size_of::<Matrix>())
-            + if_any(scene.materials.iter().any(|m| m.plasticity.is_some()), size_of::<PlasticPart>());
+            + if_any(has_affine(scene), size_of::<Matrix>())
+            + if_any(is_plastic(scene), size_of::<PlasticPart>());
         // Its row and its place in the order of rows; its motion and its row among those that cracks divide.
         let particle = saved
             + 2 * size_of::<u32>()
             + if_any(has_cracks, size_of::<Motion>() + size_of::<u32>())
             + if_any(sends_back, size_of::<Vector>());
         let node = NUMBERS_PER_FIELD * size_of::<f64>()
-            + if_any(has_cracks, size_of::<u32>())
+            + if_any(has_cracks, MARKS_PER_NODE * size_of::<bool>())
             + if_any(sends_back, size_of::<Vector>());
         let divided = kernel::width(settings.kernel).pow(2) * (size_of::<Entry>() + size_of::<Raw>());
         let outlines = amounts.outline_points * size_of::<Tracer>() as f64;

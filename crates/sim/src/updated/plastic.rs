@@ -16,7 +16,8 @@ impl PlasticPart {
     /// Nothing has flowed.
     pub(super) const NONE: Self = Self { gradient: Matrix::new(1.0, 0.0, 0.0, 1.0), hardening: 1.0 };
 
-    /// Moves the part of the trial F_E that is beyond the limits into F_P; gives the new F_E − I (thesis eq. 14–17, erratum corrected).
+    /// Moves the part of the trial F_E that is beyond the limits into F_P; gives the new F_E − I (thesis eq. 14–17,
+    /// erratum corrected).
     pub(super) fn flow(&mut self, elastic_trial: Matrix, plasticity: &Plasticity) -> Matrix {
         let Some(step) = crate::plastic_step(&elastic_trial, &self.gradient, plasticity) else { return elastic_trial };
         self.gradient = step.plastic;

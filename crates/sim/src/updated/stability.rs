@@ -1,6 +1,7 @@
 //! The largest stable time step.
 
-use super::Updated;
+use super::points::Points;
+use super::setup::Setup;
 use crate::grid::kernel::axis_stencil;
 use crate::material::constitutive::principal_stretches;
 use crate::material::elastic::Elastic;
@@ -9,17 +10,21 @@ use fissure_scene::{Kernel, Scene};
 /// Places of a particle between two nodes at which a kernel is tried.
 const PLACES: usize = 256;
 
-/// What Σ w'²/w stands for with the bilinear kernel, where it has no bound: strains come from remapped velocities there. Assessment: a cracked plate that
-/// flies through the cells (FLIP) is stable at c_d Δt/h = 0.4 and gains energy at 0.6.
+/// What Σ w'²/w stands for with the bilinear kernel, where it has no bound: strains come from remapped velocities
+/// there. Measured: a cracked plate that flies through the cells (FLIP) is stable at c_d Δt/h = 0.4 and gains energy at
+/// 0.6.
 const BILINEAR_SPREAD: f64 = 16.0;
 
-/// Largest stable c_d Δt / h whatever the arrangement of particles, surfaces and cracks: 2/ω̂ with a bound ω̂ on all frequencies.
+/// Largest stable c_d Δt / h whatever the arrangement of particles, surfaces and cracks: 2/ω̂ with a bound ω̂ on all
+/// frequencies.
 ///
-/// K = Σ_p K_p and M = Σ_p M_p with M_p = m_p diag(w_ip), so no frequency is above the largest of a single particle's K_p, M_p (element eigenvalue
-/// theorem, Irons & Treharne 1971). Kernels are products, so that Σ_i ∇w ∇wᵀ/w = diag(S, S)/h² with S = Σ w'²/w along one axis, and a
-/// particle's largest frequency is that of dilatation: ω² ≤ (c_d/h)² S (1 + λ/(λ+2μ)). S: GIMP 9.3, quadratic 6, cubic 3.2. With ν = 0.3 in plane strain:
-/// GIMP 0.55, quadratic 0.68, cubic 0.94; measured on a cracked plate at rest and in flight: stable at 0.57, 0.62, 0.96, unstable at 0.68, 0.78, 1.15.
-pub(super) fn stable_number(scene: &Scene, elastic: &Elastic) -> f64 {
+/// K = Σ_p K_p and M = Σ_p M_p with M_p = m_p diag(w_ip), so no frequency is above the largest of a single particle's
+/// K_p, M_p (element eigenvalue theorem, Irons & Treharne 1971). Kernels are products, so that Σ_i ∇w ∇wᵀ/w =
+/// diag(S, S)/h² with S = Σ w'²/w along one axis, and a particle's largest frequency is that of dilatation:
+/// ω² ≤ (c_d/h)² S (1 + λ/(λ+2μ)). S: GIMP 9.3, quadratic 6, cubic 3.2. With ν = 0.3 in plane strain: GIMP 0.55,
+/// quadratic 0.68, cubic 0.94; measured on a cracked plate at rest and in flight: stable at 0.57, 0.62, 0.96, unstable
+/// at 0.68, 0.78, 1.15.
+fn stable_number(scene: &Scene, elastic: &Elastic) -> f64 {
     let kernel = scene.solver.kernel;
     let spread = if kernel == Kernel::Bilinear {
         BILINEAR_SPREAD
@@ -35,30 +40,41 @@ pub(super) fn stable_number(scene: &Scene, elastic: &Elastic) -> f64 {
     2.0 / (spread * (1.0 + elastic.lambda / (elastic.lambda + 2.0 * elastic.mu))).sqrt()
 }
 
-impl Updated {
-    /// Largest stable step for the present state [s]: h N / (c + |v|) with the fastest wave c (stretch and hardening included) and the fastest particle;
-    /// no particle moves by more than half a cell.
-    pub(super) fn largest_stable_step(&self) -> f64 {
-        let h = self.scene.cell_size;
+/// Bounds on the time step.
+#[derive(Debug)]
+pub(super) struct Stability {
+    /// Largest stable c_d Δt / h of each material [–].
+    number: Vec<f64>,
+}
+
+impl Stability {
+    pub(super) fn of(setup: &Setup) -> Self {
+        Self { number: setup.elastic.iter().map(|elastic| stable_number(&setup.scene, elastic)).collect() }
+    }
+
+    /// Largest stable step for the present state [s]: h N / (c + |v|) with the fastest wave c (stretch and hardening
+    /// included) and the fastest particle; no particle moves by more than half a cell.
+    pub(super) fn largest_step(&self, setup: &Setup, points: &Points) -> f64 {
+        let h = setup.scene.cell_size;
         let mut rate = 0.0_f64;
         let mut speed_squared = 0.0_f64;
-        for point in &self.state.points {
+        for point in &points.point {
             speed_squared = speed_squared.max(point.velocity.norm_squared());
         }
         // Held particles may stand still now and move in the next step.
-        for support in &self.scene.supports {
+        for support in &setup.scene.supports {
             let factor = support.curve.points.iter().fold(1.0_f64, |a, p| a.max(p.1.abs()));
             let v: f64 = support.velocity.iter().flatten().map(|v| v * v).sum();
             speed_squared = speed_squared.max(v * factor * factor);
         }
         let speed = speed_squared.sqrt();
-        for (p, point) in self.state.points.iter().enumerate() {
-            let material = self.particles.material[p] as usize;
+        for (p, point) in points.point.iter().enumerate() {
+            let material = setup.particles.material[p] as usize;
             // The tangent of P Fᵀ grows with the square of the largest stretch.
             let [stretch, _] = principal_stretches(&point.elastic_gradient);
-            let hardening = self.state.plastic.get(p).map_or(1.0, |part| part.hardening.sqrt());
-            let wave = self.elastic[material].dilatational_wave_speed() * stretch.max(1.0) * hardening;
-            rate = rate.max((wave + speed) / (self.stable_number[material] * h));
+            let hardening = points.plastic.get(p).map_or(1.0, |part| part.hardening.sqrt());
+            let wave = setup.elastic[material].dilatational_wave_speed() * stretch.max(1.0) * hardening;
+            rate = rate.max((wave + speed) / (self.number[material] * h));
         }
         let step = 1.0 / rate;
         if speed > 0.0 { step.min(0.5 * h / speed) } else { step }

@@ -1,0 +1,187 @@
+//! From the grid to the particles: deformation, velocity, collision and advection (thesis 3.1.5 and 3.1.6).
+
+use super::gather::{FromGrid, Wanted};
+use super::lattice::Lattice;
+use super::nodes::Nodes;
+use super::plastic::PlasticPart;
+use super::points::{MaterialPoint, Motion, Points};
+use super::setup::Setup;
+use crate::SimulationError;
+use crate::boundary::collider::PlacedObstacle;
+use crate::threads::prelude::*;
+use fissure_scene::{Kernel, Matrix, Point};
+
+/// Particles that one task takes.
+const CHUNK: usize = 1024;
+
+/// A task: neighbouring particles and what they carry.
+struct Task<'a> {
+    first: usize,
+    points: &'a mut [MaterialPoint],
+    affine: &'a mut [Matrix],
+    plastic: &'a mut [PlasticPart],
+    motion: &'a mut [Motion],
+}
+
+/// What a task reports.
+#[derive(Debug, Default)]
+struct Report {
+    /// Work of colliders on particles [J/m].
+    work: f64,
+    failure: Option<Failure>,
+}
+
+/// A particle with which the run cannot go on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Failure {
+    pub(super) particle: usize,
+    cause: Cause,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Cause {
+    NotFinite,
+    Inverted(f64),
+    TooFast(f64),
+}
+
+impl Failure {
+    /// The error of a particle that has come to `place` at `time` [s].
+    pub(super) fn at(&self, place: Point, time: f64) -> SimulationError {
+        let particle = self.particle;
+        let cause = match self.cause {
+            Cause::NotFinite => {
+                format!("particle {particle} has lost its finite state; use a smaller `solver.courant` or weaker loads")
+            }
+            Cause::Inverted(ratio) => format!(
+                "particle {particle} is turned inside out (volume ratio {ratio:.2}); use a smaller `solver.courant`, \
+                 weaker loads, or a finer `grid.particle_spacing`"
+            ),
+            Cause::TooFast(cells) => format!(
+                "particle {particle} moves by {cells:.2} cells in a step; use a smaller `solver.courant` or \
+                 `solver.time_step`"
+            ),
+        };
+        SimulationError::Unstable { time, x: place.x, y: place.y, cause }
+    }
+}
+
+/// One step on the particles' side.
+pub(super) struct ParticleStep<'a> {
+    pub(super) from: FromGrid<'a>,
+    /// The colliders where they are in the middle of the step.
+    pub(super) obstacles: Vec<PlacedObstacle<'a>>,
+    /// [s].
+    pub(super) time_step: f64,
+}
+
+impl ParticleStep<'_> {
+    /// Moves all particles; gives the work of colliders on them [J/m].
+    ///
+    /// # Errors
+    /// When a particle is no longer finite, is turned inside out, or moves by more than a cell.
+    pub(super) fn advance(&self, points: &mut Points) -> Result<f64, Failure> {
+        match self.from.lattice.kernel {
+            Kernel::Bilinear => self.all_tasks::<2>(points),
+            Kernel::Gimp | Kernel::Quadratic => self.all_tasks::<3>(points),
+            Kernel::Cubic => self.all_tasks::<4>(points),
+        }
+    }
+
+    /// Cuts what all particles carry into tasks and runs them.
+    fn all_tasks<const W: usize>(&self, all: &mut Points) -> Result<f64, Failure> {
+        let mut affine = all.affine.chunks_mut(CHUNK);
+        let mut plastic = all.plastic.chunks_mut(CHUNK);
+        let mut motion = all.motion.chunks_mut(CHUNK);
+        let cut = |(k, points)| Task {
+            first: k * CHUNK,
+            points,
+            affine: affine.next().unwrap_or_default(),
+            plastic: plastic.next().unwrap_or_default(),
+            motion: motion.next().unwrap_or_default(),
+        };
+        let tasks: Vec<Task<'_>> = all.point.chunks_mut(CHUNK).enumerate().map(cut).collect();
+        let FromGrid { setup, lattice, nodes } = self.from;
+        let run = |task: Task<'_>| run::<W>(setup, lattice, nodes, &self.obstacles, self.time_step, task);
+        let reports: Vec<Report> = if self.from.setup.is_parallel() {
+            tasks.into_par_iter().map(run).collect()
+        } else {
+            tasks.into_iter().map(run).collect()
+        };
+        let mut work = 0.0;
+        for report in &reports {
+            work += report.work;
+        }
+        reports.iter().find_map(|report| report.failure).map_or(Ok(work), Err)
+    }
+}
+
+/// Runs a task. As arguments of their own the parts are known not to overlap what the task changes.
+fn run<const W: usize>(
+    setup: &Setup,
+    lattice: &Lattice,
+    nodes: &Nodes,
+    obstacles: &[PlacedObstacle<'_>],
+    time_step: f64,
+    task: Task<'_>,
+) -> Report {
+    let settings = &setup.scene.solver;
+    let from = FromGrid { setup, lattice, nodes };
+    let mut walker = from.walker();
+    let mut wanted = Wanted::by(settings.transfer, settings.kernel);
+    wanted.before |= !task.motion.is_empty();
+    let mut report = Report::default();
+    for (k, point) in task.points.iter_mut().enumerate() {
+        let p = task.first + k;
+        let g = from.gather::<W>(&mut walker, p, point, wanted);
+        if let Some(motion) = task.motion.get_mut(k) {
+            *motion = g.motion(time_step);
+        }
+        // F_E* = (I + Δt ∇v) F_E, eq. 13.
+        let h = point.elastic_gradient;
+        point.elastic_gradient = h + (g.gradient + g.gradient * h) * time_step;
+        if let Some(part) = task.plastic.get_mut(k)
+            && let Some(law) = &setup.scene.materials[setup.particles.material[p] as usize].plasticity
+        {
+            point.elastic_gradient = part.flow(point.elastic_gradient, law);
+        }
+        if let Some(c) = task.affine.get_mut(k) {
+            // The affine weights of the bilinear kernel are its gradients.
+            *c = if W == 2 { g.gradient } else { g.affine };
+        }
+        point.velocity = g.new_velocity(point.velocity, settings.transfer);
+        let mut advection = g.velocity;
+        for obstacle in obstacles {
+            let before = point.velocity;
+            point.velocity = obstacle.resolve(before, point.position);
+            if point.velocity != before {
+                let impulse = (point.velocity - before) * setup.particles.mass[p];
+                report.work += impulse.dot(&obstacle.velocity(point.position));
+            }
+            advection = obstacle.resolve(advection, point.position);
+        }
+        let motion = advection * time_step;
+        point.position += motion;
+        let ratio = 1.0 + crate::volume_change(&point.elastic_gradient);
+        if report.failure.is_none() {
+            report.failure = cause_of_failure(ratio, motion.norm_squared(), lattice.grid.cell_size)
+                .map(|cause| Failure { particle: p, cause });
+        }
+    }
+    report
+}
+
+/// Why a particle with this volume ratio [–] that moves by this distance squared [m²] through cells of size `h` [m]
+/// cannot go on.
+#[inline]
+fn cause_of_failure(ratio: f64, way_squared: f64, h: f64) -> Option<Cause> {
+    if ratio > 0.0 && way_squared < h * h {
+        return None;
+    }
+    let is_finite = ratio.is_finite() && way_squared.is_finite();
+    Some(match is_finite {
+        false => Cause::NotFinite,
+        true if ratio <= 0.0 => Cause::Inverted(ratio),
+        true => Cause::TooFast(way_squared.sqrt() / h),
+    })
+}

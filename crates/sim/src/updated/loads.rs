@@ -1,0 +1,73 @@
+//! Loads as forces on particles.
+
+use super::gather::FromGrid;
+use super::lattice::Lattice;
+use super::nodes::Nodes;
+use super::points::Points;
+use super::setup::Setup;
+use crate::SimulationError;
+use crate::boundary::loads::{ForcePlace, forces_of_load, nearest};
+use fissure_scene::{Load, Vector};
+
+/// The forces of all loads.
+#[derive(Debug)]
+pub(super) struct Loads {
+    /// Per load: (particle, force at a curve factor of 1 [N/m]).
+    forces: Vec<Vec<(u32, Vector)>>,
+}
+
+impl Loads {
+    /// The forces of the loads of a scene; those along outlines act on the nearest of the selected particles.
+    ///
+    /// # Errors
+    /// When a load selects nothing.
+    pub(super) fn new(setup: &Setup) -> Result<Self, SimulationError> {
+        let Setup { scene, particles, .. } = setup;
+        let of_load = |(index, load): (usize, &Load)| {
+            let layer = particles.select(scene, &load.selection);
+            let particle = |place| match place {
+                ForcePlace::Particle(p) => Some(p),
+                ForcePlace::Outline(place) => nearest(particles, layer.iter().copied(), place),
+            };
+            let forces = forces_of_load(scene, particles, index)?.into_iter();
+            let forces: Vec<(u32, Vector)> = forces.filter_map(|at| Some((particle(at.place)?, at.force))).collect();
+            if forces.is_empty() {
+                return Err(particles.no_particle("load", index, &load.selection).into());
+            }
+            Ok(forces)
+        };
+        Ok(Self { forces: scene.loads.iter().enumerate().map(of_load).collect::<Result<_, SimulationError>>()? })
+    }
+
+    /// Adds the forces at the time `middle` [s] to those on nodes.
+    pub(super) fn add_forces(&self, points: &Points, lattice: &Lattice, setup: &Setup, middle: f64, nodes: &mut Nodes) {
+        let force = &mut nodes.after;
+        for (load, forces) in setup.scene.loads.iter().zip(&self.forces) {
+            let factor = load.curve.value(middle);
+            if factor == 0.0 {
+                continue;
+            }
+            for &(p, f) in forces {
+                let f = f * factor;
+                lattice.for_each_entry(p as usize, points.point[p as usize].position, |field, w| {
+                    force[0][field] += w * f.x;
+                    force[1][field] += w * f.y;
+                });
+            }
+        }
+    }
+
+    /// Power of the forces at the time `middle` [s]: material moves by Σ v_i w_ip Δt, so that Σ f·v Δt is their exact
+    /// work [W/m].
+    pub(super) fn power(&self, points: &Points, from: &FromGrid<'_>, middle: f64) -> f64 {
+        let mut power = 0.0;
+        for (load, forces) in from.setup.scene.loads.iter().zip(&self.forces) {
+            let factor = load.curve.value(middle);
+            for &(p, f) in forces {
+                let gathered = from.gather_one(p as usize, &points.point[p as usize]);
+                power += factor * f.dot(&gathered.velocity);
+            }
+        }
+        power
+    }
+}

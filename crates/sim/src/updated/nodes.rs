@@ -1,0 +1,70 @@
+//! Values at the fields of nodes, and their change by the forces of a step.
+
+use super::setup::Setup;
+use fissure_scene::Vector;
+
+/// Values at fields: the own field of node i has number i, the further fields of all nodes follow.
+#[derive(Debug, Default)]
+pub(super) struct Nodes {
+    /// m_i [kg/m].
+    pub(super) mass: Vec<f64>,
+    /// Momentum while it is gathered, then velocity at the beginning of the step [m/s]; x and y apart.
+    pub(super) before: [Vec<f64>; 2],
+    /// Force while it is gathered, then velocity at the end of the step [m/s].
+    pub(super) after: [Vec<f64>; 2],
+    /// The beginning's velocity, sent to the particles and back, for XPIC [m/s]; empty otherwise.
+    pub(super) smoothed: [Vec<f64>; 2],
+    /// The particles' new velocities, sent to the grid once more, for the strains of the bilinear kernel [m/s]; empty
+    /// otherwise.
+    pub(super) remapped: [Vec<f64>; 2],
+}
+
+impl Nodes {
+    /// Sets all values of so many `fields` to zero.
+    pub(super) fn clear(&mut self, fields: usize) {
+        let [bx, by] = &mut self.before;
+        let [ax, ay] = &mut self.after;
+        for values in [&mut self.mass, bx, by, ax, ay] {
+            values.clear();
+            values.resize(fields, 0.0);
+        }
+        for values in self.remapped.iter_mut().chain(&mut self.smoothed) {
+            values.clear();
+        }
+    }
+
+    /// Velocity of a field at the end of the step [m/s].
+    pub(super) fn velocity(&self, field: usize) -> Vector {
+        Vector::new(self.after[0][field], self.after[1][field])
+    }
+
+    /// Velocity of a field at the beginning of the step [m/s].
+    pub(super) fn velocity_before(&self, field: usize) -> Vector {
+        Vector::new(self.before[0][field], self.before[1][field])
+    }
+
+    /// v = p/m at the beginning, v + Δt f/m at the end (thesis eq. 6), with gravity and a `damping` rate [1/s].
+    pub(super) fn update_velocities(&mut self, gravity: Vector, damping: f64, time_step: f64) {
+        let decay = (-damping * time_step).exp();
+        let gravity = gravity * time_step;
+        for axis in 0..2 {
+            let (before, after) = (&mut self.before[axis], &mut self.after[axis]);
+            for ((m, v), f) in self.mass.iter().zip(before.iter_mut()).zip(after.iter_mut()) {
+                if *m > 0.0 {
+                    *v /= m;
+                    *f = *v * decay + time_step * *f / m + gravity[axis];
+                }
+            }
+        }
+    }
+
+    /// Power of gravity [W/m].
+    pub(super) fn power_of_gravity(&self, setup: &Setup) -> f64 {
+        let g = setup.scene.gravity;
+        if g == Vector::zeros() {
+            return 0.0;
+        }
+        let [vx, vy] = &self.after;
+        self.mass.iter().zip(vx.iter().zip(vy)).map(|(m, (vx, vy))| m * (g.x * vx + g.y * vy)).sum()
+    }
+}

@@ -1,0 +1,100 @@
+//! What can be read from the solver between two steps.
+
+use super::Updated;
+use super::faces::Faces;
+use super::points::Points;
+use super::setup::Setup;
+use crate::SimulationError;
+use crate::crack::cracks::Cracks;
+use crate::faces::crack_frame::crack_frame;
+use crate::saved;
+use crate::solver::{Continuation, Snapshot, SolverEnergies};
+use fissure_scene::{CrackFrame, Matrix, OutlineFrame, ParticleFrame, Scene, Vector};
+
+impl Snapshot for Updated {
+    fn particle_frame(&self) -> ParticleFrame {
+        self.points.frame(&self.setup)
+    }
+
+    fn outline_frames(&self) -> Vec<OutlineFrame> {
+        self.faces.outline_frames(&self.setup.scene)
+    }
+
+    fn crack_frames(&self, cracks: &Cracks) -> Vec<CrackFrame> {
+        self.faces.crack_frames(cracks)
+    }
+
+    fn energies(&self) -> SolverEnergies {
+        SolverEnergies {
+            kinetic: self.points.kinetic_energy(&self.setup),
+            strain: self.points.strain_energy(&self.setup),
+            external_work: self.external_work,
+        }
+    }
+
+    fn kinetic_energy(&self) -> f64 {
+        self.points.kinetic_energy(&self.setup)
+    }
+
+    fn momenta(&self) -> (Vector, f64) {
+        self.points.momenta(&self.setup)
+    }
+
+    fn rayleigh_quotient(&self) -> Option<f64> {
+        // Its forces live on a grid that is laid anew in every step.
+        None
+    }
+
+    fn continuation(&self, _cracks: &Cracks) -> Option<Continuation> {
+        None
+    }
+
+    fn save(&self) -> Result<Vec<u8>, SimulationError> {
+        saved::to_bytes(&(&self.points, &self.faces, self.external_work))
+    }
+}
+
+impl Points {
+    /// The particles as a frame holds them (pieces left 0).
+    pub(super) fn frame(&self, setup: &Setup) -> ParticleFrame {
+        let particles = &setup.particles;
+        let n = particles.len();
+        let mut frame = ParticleFrame {
+            id: (0..n as u32).collect(),
+            body: particles.body.clone(),
+            piece: vec![0; n],
+            rest: particles.rest.clone(),
+            position: Vec::with_capacity(n),
+            velocity: Vec::with_capacity(n),
+            deformation_gradient: Vec::with_capacity(n),
+            cauchy_stress: Vec::with_capacity(n),
+        };
+        for (p, point) in self.point.iter().enumerate() {
+            let (mu, lambda) = self.moduli(setup, p);
+            let h = self.total_gradient(p);
+            let ratio = 1.0 + crate::volume_change(&h);
+            frame.position.push(point.position);
+            frame.velocity.push(point.velocity);
+            frame.deformation_gradient.push(Matrix::identity() + h);
+            frame.cauchy_stress.push(crate::kirchhoff_stress(&point.elastic_gradient, mu, lambda) / ratio);
+        }
+        frame
+    }
+}
+
+impl Faces {
+    /// The rings of all bodies of `scene`.
+    pub(super) fn outline_frames(&self, scene: &Scene) -> Vec<OutlineFrame> {
+        self.outlines.frames(scene, |tracer| match tracer.face {
+            None => (tracer.position, tracer.velocity),
+            Some((id, face)) => self.cracks[id.crack].face_end(id.end, face),
+        })
+    }
+
+    /// The cracks with both faces.
+    pub(super) fn crack_frames(&self, cracks: &Cracks) -> Vec<CrackFrame> {
+        let now = self.cracks.iter().enumerate();
+        let frames = cracks.iter().zip(now);
+        frames.map(|(c, (i, now))| crack_frame(i, c, now.faces.clone(), now.velocities.clone())).collect()
+    }
+}
