@@ -19,6 +19,8 @@
 //! fragments that the simulation lets overlap in different bodies, stay apart; openings below two grid steps (4e-6 m in
 //! a body of 20 m) may be shown closed.
 
+#[doc(hidden)]
+pub mod bench;
 mod boolean;
 mod colliders;
 mod cracked;

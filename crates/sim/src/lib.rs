@@ -3,6 +3,8 @@
 //!
 //! Touches no file and draws nothing. The same scene gives the same bytes for any number of threads.
 
+#[doc(hidden)]
+pub mod bench;
 mod boundary;
 mod crack;
 mod error;

@@ -6,8 +6,7 @@ use crate::crack::division::{Division, TipCut};
 use crate::grid::entries::{Entries, Entry};
 use crate::grid::fields::Fields;
 use crate::grid::kernel::{self, Stencil};
-use crate::grid::walker::Walker;
-use crate::grid::{BAND, Grid};
+use crate::grid::{BAND, Grid, Walker};
 use fissure_scene::{Kernel, Point, Vector};
 use std::ops::Range;
 
