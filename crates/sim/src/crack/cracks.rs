@@ -1,6 +1,7 @@
 //! All cracks of a run, and how a tip among them is named.
 
-use super::{Crack, Tip};
+use super::Crack;
+use super::tip::Tip;
 use crate::saved::{self, Fits};
 use fissure_scene::{CrackEnd, End, Point, Scene, Vector};
 use serde::{Deserialize, Serialize};

@@ -7,7 +7,7 @@
 use super::advance::LAST_LIGAMENT;
 use super::barrier::first_barrier;
 use super::heading::way;
-use crate::crack::Assessment;
+use crate::crack::assessment::Assessment;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::material::elastic::Elastic;
 use crate::tip::frame::turned;

@@ -1,7 +1,8 @@
 //! Where a tip wants to go: by the stress, by a drawn path, or by both.
 
+use crate::crack::DIRECTION_LENGTH;
+use crate::crack::assessment::Assessment;
 use crate::crack::cracks::{Cracks, TipId};
-use crate::crack::{Assessment, DIRECTION_LENGTH};
 use crate::material::elastic::Elastic;
 use crate::tip::frame::turned;
 use crate::tip::gauge::KINK;

@@ -4,7 +4,7 @@
 use super::advance::{Advance, LAST_LIGAMENT};
 use super::barrier::{beside, first_barrier};
 use super::heading::way;
-use crate::crack::Assessment;
+use crate::crack::assessment::Assessment;
 use crate::crack::cracks::{Cracks, TipId};
 use fissure_scene::{CrackEnd, Scene, TipState};
 

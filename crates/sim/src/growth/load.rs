@@ -3,8 +3,9 @@
 use super::criterion::criterion;
 use super::heading::{physical_way, way};
 use super::seeking::{is_varied, toughness_at};
+use crate::crack::DIRECTION_LENGTH;
+use crate::crack::assessment::Assessment;
 use crate::crack::cracks::{Cracks, TipId};
-use crate::crack::{Assessment, DIRECTION_LENGTH};
 use crate::tip::gauge::Reading;
 use fissure_scene::{Scene, Vector};
 

@@ -2,8 +2,10 @@
 
 use super::Simulation;
 use crate::SimulationError;
+use crate::crack::Crack;
+use crate::crack::assessment::Assessment;
 use crate::crack::cracks::TipId;
-use crate::crack::{Assessment, Crack, Tip};
+use crate::crack::tip::Tip;
 use crate::growth::{self, Advance, Cost};
 use crate::solver::Observed;
 use crate::tip::gauge::Gauge;

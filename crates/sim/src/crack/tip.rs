@@ -1,0 +1,92 @@
+//! A crack tip while it lives: its state, its guide, and what it may and can pay for.
+
+use super::assessment::Assessment;
+use super::guide::GuideWalk;
+use crate::saved::{self, Fits};
+use fissure_plane::{Point, Vector};
+use fissure_scene::TipState;
+use serde::{Deserialize, Serialize};
+
+/// A crack tip.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct Tip {
+    /// Whether it rests, grows or has come to its end.
+    pub(crate) state: TipState,
+    /// Path to follow.
+    pub(crate) guide: Option<GuideWalk>,
+    /// How far the tip is ahead of what the speed limit allows [m]; it may grow when this is not positive.
+    pub(crate) ahead_of_limit: f64,
+    /// Steps since it grew last.
+    pub(crate) steps_at_rest: u32,
+    /// Crack length added since the tip divided last; infinite before it ever did [m].
+    pub(crate) since_division: f64,
+    /// Steps until it is measured again.
+    pub(crate) steps_to_look: u32,
+    /// Crack length this tip has added so far [m].
+    pub(crate) grown: f64,
+    /// What [`Tip::run`] was at the last frame [m].
+    pub(crate) run_at_frame: f64,
+    /// What was measured last.
+    pub(crate) assessment: Assessment,
+    /// Where the increment ends that the tip is on its way through; none between increments.
+    pub(crate) target: Option<Point>,
+    /// Energy that the tip has taken out of the body beyond the cost of its growth [J/m], never negative. It pays for
+    /// growth to come, but at most for a small part of a cell.
+    pub(crate) balance: f64,
+    /// Direction of growth asked for by the stress, averaged over the last moments; at rest, not normalised. Zero:
+    /// nothing known.
+    pub(crate) heading: Vector,
+}
+
+impl Tip {
+    /// A tip that has not grown yet.
+    pub(crate) fn new(guide: Option<GuideWalk>) -> Self {
+        Self {
+            state: TipState::Resting,
+            guide,
+            ahead_of_limit: 0.0,
+            steps_at_rest: 0,
+            since_division: f64::INFINITY,
+            steps_to_look: 0,
+            grown: 0.0,
+            run_at_frame: 0.0,
+            assessment: Assessment::default(),
+            target: None,
+            balance: f64::INFINITY,
+            heading: Vector::zeros(),
+        }
+    }
+
+    /// Crack length this tip has added so far without what it is ahead of its speed limit [m]: a leap, over the last
+    /// ligament or into two branches, counts as it would have been run.
+    pub(crate) fn run(&self) -> f64 {
+        self.grown - self.ahead_of_limit.max(0.0)
+    }
+
+    /// Checks a tip that was read.
+    ///
+    /// # Errors
+    /// [`SimulationError::BadState`]
+    pub(super) fn check(&self) -> Fits {
+        let m = &self.assessment;
+        let what = "a tip";
+        saved::finite(what, [&self.ahead_of_limit, &self.grown, &self.run_at_frame])?;
+        saved::finite(what, [&m.j_integral, &m.mode_1, &m.mode_2, &m.kink_angle, &m.equivalent, &m.released])?;
+        saved::finite(what, [&m.fracture_toughness, &m.contour_radius])?;
+        saved::finite(what, self.heading.iter().chain(self.target.iter().flat_map(|p| p.iter())))?;
+        // Both are infinite before the tip has grown.
+        saved::ensure(!self.since_division.is_nan() && !self.balance.is_nan(), "the balance of a tip")?;
+        self.guide.as_ref().map_or(Ok(()), GuideWalk::check)
+    }
+
+    /// Counts growth by `length` [m].
+    pub(crate) fn add_grown(&mut self, length: f64) {
+        self.grown += length;
+        self.since_division += length;
+        self.ahead_of_limit += length;
+        self.steps_at_rest = 0;
+        if let Some(guide) = &mut self.guide {
+            guide.walk(length);
+        }
+    }
+}
