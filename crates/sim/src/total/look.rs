@@ -31,25 +31,22 @@ pub(super) struct Look<'a> {
 
 impl Observed for Look<'_> {
     fn tip_zone(&self, cracks: &Cracks, id: TipId, radius: f64) -> TipZone {
+        let Self { lattice, motion, .. } = *self;
+        let particles = &lattice.particles;
         let line = cracks.of(id);
         let tip = cracks.position(id);
-        let ahead = cracks.ahead(id, DIRECTION_LENGTH * self.lattice.grid.cell_size);
-        let s = self.lattice.particles.spacing;
-        let center = (tip - self.lattice.particles.anchor) / s;
+        let ahead = cracks.ahead(id, DIRECTION_LENGTH * lattice.grid.cell_size);
+        let s = particles.spacing;
+        let center = (tip - particles.anchor) / s;
         let reach = (radius / s).ceil() as i32 + 1;
         let center = [center.x.floor() as i32, center.y.floor() as i32];
         let mut found: Vec<(usize, Matrix)> = Vec::new();
         let mut mean = Matrix::zeros();
-        let mut reader = self.lattice.reader();
-        for p in self
-            .lattice
-            .particles
-            .within(center.map(|c| c.saturating_sub(reach)), center.map(|c| c.saturating_add(reach)))
-        {
-            if (self.lattice.particles.rest[p] - tip).norm_squared() < radius * radius
-                && self.lattice.particles.body[p] == line.body
-            {
-                let h = reader.strain(p, &self.motion.displacement);
+        let mut reader = lattice.reader();
+        let (low, high) = (center.map(|c| c.saturating_sub(reach)), center.map(|c| c.saturating_add(reach)));
+        for p in particles.within(low, high) {
+            if (particles.rest[p] - tip).norm_squared() < radius * radius && particles.body[p] == line.body {
+                let h = reader.strain(p, &motion.displacement);
                 mean += h;
                 found.push((p, h));
             }
@@ -62,15 +59,15 @@ impl Observed for Look<'_> {
         let frame = Matrix::new(ahead.x, ahead.y, -ahead.y, ahead.x);
         let mut points = Vec::with_capacity(found.len());
         for (p, h) in found {
-            let e = self.lattice.material(p);
-            let arm = self.lattice.particles.rest[p] - tip;
+            let e = lattice.material(p);
+            let arm = particles.rest[p] - tip;
             let into = |m: Matrix| frame * m * frame.transpose();
-            let ParticleRates { velocity, velocity_gradient, acceleration } = reader.rates(p, self.motion);
+            let ParticleRates { velocity, velocity_gradient, acceleration } = reader.rates(p, motion);
             let velocity = velocity - acceleration * self.half_step;
             points.push(QuadraturePoint {
                 place: frame * arm,
-                side: side_of(&line.points, id.end, ahead, self.lattice.particles.rest[p]),
-                volume: self.lattice.particles.volume[p],
+                side: side_of(&line.points, id.end, ahead, particles.rest[p]),
+                volume: particles.volume[p],
                 stress: into(back * crate::first_piola_stress(&h, e.mu, e.lambda)),
                 gradient: into(back * h + back_minus_one),
                 energy: crate::energy_density(&h, e.mu, e.lambda),
@@ -78,7 +75,7 @@ impl Observed for Look<'_> {
                 velocity: frame * (back * velocity),
                 velocity_slope: frame * (back * (velocity_gradient * ahead)),
                 acceleration: frame * (back * acceleration),
-                material: self.lattice.particles.material[p],
+                material: particles.material[p],
             });
         }
         let (opening, opening_distance) = self.opening(cracks, id, frame * back);
@@ -86,9 +83,9 @@ impl Observed for Look<'_> {
         let sign = left_of_tip(id.end).sign();
         let contacts = self
             .contacts
-            .forces(id.crack, self.lattice)
+            .forces(id.crack, lattice)
             // Elsewhere the crack may have come back behind the tip.
-            .filter(|(place, _)| (place - tip).norm() < radius + 2.0 * self.lattice.grid.cell_size)
+            .filter(|(place, _)| (place - tip).norm() < radius + 2.0 * lattice.grid.cell_size)
             .map(|(place, force)| FaceContact { behind: (tip - place).dot(&ahead), force: into * force * sign })
             .collect();
         TipZone { points, contacts, opening, opening_distance }

@@ -30,6 +30,7 @@ mod stability;
 mod supports;
 #[cfg(test)]
 mod tests;
+mod tie;
 mod ties;
 
 use crate::SimulationError;
@@ -118,7 +119,7 @@ impl Total {
     }
 
     fn lattice(scene: &Scene, particles: Arc<Particles>, cracks: &Cracks) -> Result<Lattice, SimulationError> {
-        let mut lattice = Lattice::new(scene, particles, ties::split_ahead(scene.growth.increment))?;
+        let mut lattice = Lattice::new(scene, particles, tie::split_ahead(scene.growth.increment))?;
         lattice.set_cracks(cracks);
         Ok(lattice)
     }

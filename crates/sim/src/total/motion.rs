@@ -1,7 +1,6 @@
 //! How the fields move: displacements at whole steps, velocities half a step ahead.
 
 use super::lattice::Lattice;
-use crate::particles::Particles;
 use crate::saved::{self, Fits};
 use fissure_plane::Vector;
 use fissure_scene::Scene;
@@ -46,13 +45,7 @@ impl Motion {
 
     /// The motion at time zero: that of the particles.
     pub(super) fn initial(scene: &Scene, lattice: &Lattice) -> Self {
-        let mut motion = Self::at_rest(lattice.len());
-        motion.set_velocities(lattice, &lattice.particles, scene);
-        motion
-    }
-
-    fn set_velocities(&mut self, lattice: &Lattice, particles: &Particles, scene: &Scene) {
-        let mass = &lattice.layout.mass;
+        let (particles, mass) = (&lattice.particles, &lattice.layout.mass);
         let mut momentum = [vec![0.0; mass.len()], vec![0.0; mass.len()]];
         let mut any = false;
         let mut reader = lattice.reader();
@@ -67,13 +60,15 @@ impl Motion {
                 });
             }
         }
+        let mut initial = Self::at_rest(lattice.len());
         if any {
             for axis in 0..2 {
                 for (d, &m) in mass.iter().enumerate() {
-                    self.velocity[axis][d] = if m > 0.0 { momentum[axis][d] / m } else { 0.0 };
+                    initial.velocity[axis][d] = if m > 0.0 { momentum[axis][d] / m } else { 0.0 };
                 }
             }
         }
+        initial
     }
 
     /// Checks a motion that was read against so many `fields`.

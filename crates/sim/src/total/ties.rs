@@ -1,29 +1,9 @@
-//! Ties: what holds the two sides of a node together until a tip has passed it.
-//!
-//! A node near a tip either has one field or two, and giving it its second field opens its whole support at once: the
-//! crack would act as if it jumped from node to node, and what it releases would stay in the lattice as vibration. So
-//! the second field comes early, held to the first by a spring that softens from stiff to nothing while the tip passes.
-//! A spring of stiffness s (1 − t)/t across a node that would open with the stiffness s has released the part t of what
-//! it will release in all. Here several nodes of a row soften at a time, and s (1 − t)³/t lets the effective length of
-//! the crack follow the tip best.
-//!
-//! **Energy.** Nothing but the springs depends on where the tip is within its increment. Softened at an opening δ they
-//! give up ½ Δk δ², never less than nothing: this is the energy that the crack consumes, and what makes the tip move as
-//! the energy balance says (node release along a decreasing force is the classic way to run a crack through finite
-//! elements: Malluck & King 1980; here the force follows from the spring).
-//!
-//! **Drag.** A crack that runs fast softens its ties faster than nodes can part, and a part of what is released would
-//! stay in the lattice as waves of a few cells. A viscous force on the opening takes it: at 1500 m/s in steel (0.51
-//! c_R) ties and drag together take 91 % of ∫ G da, with two thirds of the drag 89 % (`fissure verify moving-crack`).
-//!
-//! **Inertia.** A stiff spring between two light fields would ask for a short time step. A tie of stiffness k therefore
-//! carries the kinetic energy ½ m |δ̇|² with m ≥ k/ω², ω the highest frequency of a plane wave on the uncut lattice. It
-//! acts on the difference of the two fields alone, so momentum, gravity and rigid motion do not see it, and by
-//! Rayleigh's quotient (K + k)/(M + m) ≤ max(K/M, k/m) no mode is faster than one of the lattice without ties.
+//! The ties of all tips: where they are laid, how they are coupled, softened, and what they release.
 
 use super::lattice::Lattice;
 use super::motion::{FieldVectors, Motion};
 use super::near::Near;
+use super::tie::{self, Measures, Tie};
 use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::division::WINDOW;
 use crate::saved::{self, Fits};
@@ -32,28 +12,6 @@ use fissure_plane::{Point, Vector};
 use fissure_scene::{CrackEnd, TipState};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
-
-/// A spring between two fields of one node.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-struct Tie {
-    first: u32,
-    second: u32,
-    node: u32,
-    /// Where the node is at rest [m].
-    place: Point,
-    /// What stiffness and drag are measured by [Pa], per unit thickness.
-    scale: f64,
-    /// Opening without force [m].
-    rest: Vector,
-    /// Force per opening [Pa], per unit thickness.
-    stiffness: f64,
-    /// Inertia of the opening [kg/m].
-    inertia: f64,
-    /// Force per opening speed [Pa s], per unit thickness.
-    drag: f64,
-    /// Energy that the drag has taken and that is not accounted for yet [J/m].
-    dragged: f64,
-}
 
 /// The fields of one node that ties couple by their inertia.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -72,100 +30,6 @@ pub(super) struct Ties {
     at_node: BTreeMap<u32, Coupled>,
 }
 
-/// Displacements of two fields that differ by less than this part of their size differ by round-off only: the faces of
-/// a crack that has just come still lie on each other.
-const ROUND_OFF: f64 = 1e-12;
-/// How far ahead of the tip a node is where its tie begins to soften, in cells. Chosen with the four numbers below on a
-/// static edge crack of 8 cells in 64 places within a cell: K_I is off by −0.1 ± 0.2 %, at worst −0.5 %; at 16 cells by
-/// 0.0 ± 0.1 %, at worst 0.3 %.
-const BEGINS: f64 = 0.51;
-/// Way of the tip over which a tie softens from its full stiffness to none, in cells. For a crack at rest one cell
-/// would do as well, but at half the Rayleigh wave speed it leaves more than a quarter of what is released as
-/// vibration.
-const LENGTH: f64 = 2.0;
-/// Stiffness of a tie divided by s (1 − t)³/t, where t is the part of it that is released and s = 1/√(1/s₁² + 1/s₂²) of
-/// the stiffness s₁, s₂ [Pa] of its two fields.
-const STIFFNESS: f64 = 0.49;
-/// The released part t of a tie that has not begun to soften.
-const FIRST_RELEASED: f64 = 0.02;
-/// √(m/k) of a tie with inertia m and stiffness k, divided by the time a wave takes for a cell. At ½, where ω = 2c/h,
-/// no mode is faster than one of the lattice without ties; with more, ties vibrate more slowly and less. Root mean
-/// square error of K_I in `fissure verify step-load`, at worst: 1.1 % with 0.5, 0.93 % with this, 0.73 % with 0.8.
-/// Length grown in `fissure verify crack-motion` at 2.0 and 2.4 t_c: +13 and 0 %, +8 and −5 %, +2 and −9 %.
-const INERTIA: f64 = 0.65;
-
-/// Drag of a tie divided by s (1 − t)³/((1 − t)³ + t) and by the time a wave takes for a cell. Length grown in
-/// `fissure verify crack-motion` at 2.4 t_c: −5 % with this, −6 % with two thirds of it; with an [`INERTIA`] of ½, −1 %
-/// with this, −7 % without and −5 % with twice as much.
-const DRAG: f64 = 0.73;
-
-/// How far ahead of the tip nodes are split, in cells, when tips decide on their direction every `increment` cells:
-/// before their ties begin to soften, by the way within which the division stays as it is, and a little more.
-pub(super) fn split_ahead(increment: f64) -> f64 {
-    BEGINS + increment + 0.1
-}
-
-/// How far, t, a tie is on its way from stiff to nothing when the tip is `ahead` cells from its node.
-fn released_part(ahead: f64) -> f64 {
-    (FIRST_RELEASED + (1.0 - FIRST_RELEASED) * (BEGINS - ahead) / LENGTH).clamp(FIRST_RELEASED, 1.0)
-}
-
-/// Stiffness of a tie over [`Tie::scale`].
-fn softness(released: f64) -> f64 {
-    STIFFNESS * (1.0 - released).powi(3) / released
-}
-
-/// What all ties of one body of material have in common.
-#[derive(Debug, Clone, Copy)]
-struct Measures {
-    cell_size: f64,
-    /// Time a wave takes for a cell [s].
-    crossing: f64,
-}
-
-impl Measures {
-    fn of(lattice: &Lattice) -> Self {
-        Self { cell_size: lattice.grid.cell_size, crossing: lattice.crossing_time() }
-    }
-}
-
-impl Tie {
-    /// Softens the tie to where it is when the tip is `ahead` cells from its node.
-    fn set(&mut self, ahead: f64, measures: Measures) {
-        let released = released_part(ahead);
-        self.stiffness = self.scale * softness(released);
-        self.inertia = self.stiffness * (INERTIA * measures.crossing).powi(2);
-        let stiff = (1.0 - released).powi(3);
-        self.drag = DRAG * stiff / (stiff + released) * self.scale * measures.crossing;
-    }
-
-    fn opening(&self, u: &FieldVectors) -> Vector {
-        let (a, b) = (self.first as usize, self.second as usize);
-        Vector::new(u[0][b] - u[0][a], u[1][b] - u[1][a])
-    }
-
-    /// Opening beyond that without force for the displacement `u` [m].
-    fn stretch(&self, u: &FieldVectors) -> Vector {
-        self.opening(u) - self.rest
-    }
-
-    /// Takes over from what tied the same fields before: a tie that has become stiffer, or is new between fields that
-    /// lie apart, holds with the force that was there.
-    fn take_over(&mut self, before: Option<&Self>, u: &FieldVectors) {
-        match before {
-            Some(before) if before.stiffness >= self.stiffness => self.rest = before.rest,
-            _ => {
-                let force = before.map_or(Vector::zeros(), |before| before.stretch(u) * before.stiffness);
-                self.rest = self.opening(u) - force / self.stiffness.max(f64::MIN_POSITIVE);
-            }
-        }
-    }
-
-    fn ahead_of(&self, tip: Point, direction: Vector, cell_size: f64) -> f64 {
-        (self.place - tip).dot(&direction) / cell_size
-    }
-}
-
 impl Ties {
     /// Checks ties that were read against so many `fields`, `nodes` and `cracks`.
     ///
@@ -173,12 +37,7 @@ impl Ties {
     /// [`SimulationError::BadState`](crate::SimulationError::BadState)
     pub(super) fn check(&self, fields: usize, nodes: usize, cracks: usize) -> Fits {
         self.of_tip.keys().try_for_each(|id| id.check(cracks))?;
-        saved::below("a tie", self.all().flat_map(|tie| [tie.first, tie.second]), fields)?;
-        saved::below("a tie", self.all().map(|tie| tie.node), nodes)?;
-        for tie in self.all() {
-            let numbers = [&tie.scale, &tie.stiffness, &tie.inertia, &tie.drag, &tie.dragged];
-            saved::finite("a tie", numbers.into_iter().chain(tie.place.iter()).chain(tie.rest.iter()))?;
-        }
+        self.all().try_for_each(|tie| tie.check(fields, nodes))?;
         saved::below("the node of a tie", self.at_node.keys().copied(), nodes)?;
         for group in self.at_node.values() {
             saved::below("coupled ties", group.fields.iter().copied(), fields)?;
@@ -195,7 +54,7 @@ impl Ties {
     /// Takes what drag has taken at a tip since the last call [J/m].
     pub(super) fn take_drag(&mut self, id: TipId) -> f64 {
         let ties = self.of_tip.get_mut(&id).map_or(&mut [][..], Vec::as_mut_slice);
-        ties.iter_mut().map(|tie| std::mem::take(&mut tie.dragged)).sum()
+        ties.iter_mut().map(Tie::take_dragged).sum()
     }
 
     /// Adds the forces of the ties.
@@ -225,12 +84,12 @@ impl Ties {
 
     /// Elastic energy for the displacement `u` [J/m].
     pub(super) fn energy(&self, u: &FieldVectors) -> f64 {
-        self.all().map(|tie| 0.5 * tie.stiffness * tie.stretch(u).norm_squared()).sum()
+        self.all().map(|tie| tie.energy(u)).sum()
     }
 
     /// Kinetic energy for the velocity `v` [J/m].
     pub(super) fn kinetic_energy(&self, v: &FieldVectors) -> f64 {
-        self.all().map(|tie| 0.5 * tie.inertia * tie.opening(v).norm_squared()).sum()
+        self.all().map(|tie| tie.kinetic_energy(v)).sum()
     }
 
     /// Angular momentum that their inertia holds [N s].
@@ -289,7 +148,7 @@ impl Ties {
         let Some(ties) = self.of_tip.get_mut(&id) else { return };
         let mut nodes: Vec<u32> = Vec::with_capacity(ties.len());
         for tie in ties {
-            tie.set(tie.ahead_of(tip, direction, measures.cell_size), measures);
+            tie.soften(tie.ahead_of(tip, direction, measures.cell_size), measures);
             nodes.push(tie.node);
         }
         nodes.dedup();
@@ -318,7 +177,7 @@ impl Ties {
             .collect();
         Box::new(move |distance| {
             let of = |&(ahead, softness_now, energy): &(f64, f64, f64)| {
-                energy * (softness_now - softness(released_part(ahead - distance / h)))
+                energy * (softness_now - tie::softness_at(ahead - distance / h))
             };
             springs.iter().map(of).sum()
         })
@@ -356,36 +215,18 @@ impl Ties {
     /// Lets go of all openings without force but the part `kept`.
     pub(super) fn relax(&mut self, kept: f64) {
         for tie in self.of_tip.values_mut().flatten() {
-            tie.rest *= kept;
+            tie.relax(kept);
         }
     }
 
-    /// Drags at the opening of the ties around growing tips, for a kick of `kick` [s]. Only at its length: a body that
-    /// turns, and the openings with it, is not dragged at. Nor is a crack at rest, whose body keeps its energy.
+    /// Lets the drag of the ties around growing tips act within a kick of `kick` [s]. Around a crack at rest there is
+    /// none: its body keeps its energy.
     pub(super) fn apply_drag(&mut self, mass: &[f64], motion: &mut Motion, cracks: &Cracks, kick: f64) {
         for (&id, ties) in &mut self.of_tip {
             if cracks.tip(id).is_none_or(|tip| tip.state != TipState::Growing) {
                 continue;
             }
-            for tie in ties.iter_mut().filter(|tie| tie.drag > 0.0) {
-                let (a, b) = (tie.first as usize, tie.second as usize);
-                let (mass_a, mass_b) = (mass[a], mass[b]);
-                let reduced = mass_a * mass_b / (mass_a + mass_b);
-                let inertia = reduced + tie.inertia;
-                let kept = 1.0 / (1.0 + tie.drag * kick / inertia);
-                let u = &motion.displacement;
-                // What is apart by round-off only has no direction.
-                let least = ROUND_OFF * (u[0][a].abs() + u[1][a].abs() + u[0][b].abs() + u[1][b].abs());
-                let Some(direction) = tie.opening(u).try_normalize(least) else { continue };
-                let speed = direction * direction.dot(&tie.opening(&motion.velocity));
-                // The impulse works along the displacement of the step, which has the speed that is kept.
-                tie.dragged += inertia * (1.0 - kept) * kept * speed.norm_squared();
-                for axis in 0..2 {
-                    let change = speed[axis] * (1.0 - kept) * reduced;
-                    motion.velocity[axis][a] += change / mass_a;
-                    motion.velocity[axis][b] -= change / mass_b;
-                }
-            }
+            ties.iter_mut().for_each(|tie| tie.apply_drag(mass, motion, kick));
         }
     }
 }
@@ -404,7 +245,7 @@ fn ties_at(lattice: &Lattice, cracks: &Cracks, id: TipId) -> Vec<Tie> {
             let place = lattice.grid.position(node);
             let arm = (place - tip) / h;
             let ahead = arm.dot(&direction);
-            let is_tied = ahead > BEGINS - LENGTH && ahead <= lattice.split_ahead();
+            let is_tied = tie::is_tied(ahead, lattice.split_ahead());
             if lattice.layout.fields.of(node).is_empty() || !is_tied || arm.perp(&direction).abs() > WINDOW {
                 continue;
             }
@@ -413,21 +254,8 @@ fn ties_at(lattice: &Lattice, cracks: &Cracks, id: TipId) -> Vec<Tie> {
             let stiffness_of = |field: u32| fields.iter().zip(&stiffness).find(|f| *f.0 == field).map_or(0.0, |f| *f.1);
             let facing = lattice.layout.fields.facing_pairs(&fields).filter(|pair| pair.crack as usize == id.crack);
             ties.extend(facing.map(|pair| {
-                let (s1, s2) = (stiffness_of(pair.first), stiffness_of(pair.second));
-                let mut tie = Tie {
-                    first: pair.first,
-                    second: pair.second,
-                    node: node as u32,
-                    place,
-                    scale: s1 * s2 / s1.hypot(s2),
-                    rest: Vector::zeros(),
-                    stiffness: 0.0,
-                    inertia: 0.0,
-                    drag: 0.0,
-                    dragged: 0.0,
-                };
-                tie.set(ahead, measures);
-                tie
+                let stiffness = [pair.first, pair.second].map(stiffness_of);
+                Tie::new([pair.first, pair.second], (node as u32, place), stiffness, ahead, measures)
             }));
         }
     }
