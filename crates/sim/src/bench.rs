@@ -52,7 +52,7 @@ impl Bare {
     pub fn lengthen(&mut self, length: f64) {
         let tip = TipId::new(0, End::End);
         let ahead: Vector = self.cracks.last_direction(tip);
-        self.cracks.push(tip, self.cracks.position(tip) + ahead * length);
+        self.cracks.grow(tip, &[self.cracks.position(tip) + ahead * length]);
         self.solver.recut(&self.cracks, &[tip]);
     }
 }

@@ -1,7 +1,7 @@
 //! All cracks of a run, and how a tip among them is named.
 
-use super::Crack;
 use super::tip::Tip;
+use super::{Crack, slot};
 use crate::saved::{self, Fits};
 use fissure_scene::{CrackEnd, End, Point, Scene, Vector};
 use serde::{Deserialize, Serialize};
@@ -114,13 +114,44 @@ impl Cracks {
         self.0[id.crack].set_end(id.end, end);
     }
 
-    /// Adds a point at the end, for which lines will be cut.
-    pub(crate) fn push(&mut self, id: TipId, point: Point) {
-        self.0[id.crack].push(id.end, point);
+    /// Adds points at the end, for which lines will be cut. Returns the length that they add [m].
+    pub(crate) fn grow(&mut self, id: TipId, points: &[Point]) -> f64 {
+        let crack = &mut self.0[id.crack];
+        let before = crack.length();
+        for &point in points {
+            crack.push(id.end, point);
+        }
+        let length = crack.length() - before;
+        if let Some(tip) = crack.tip_mut(id.end) {
+            tip.add_grown(length);
+        }
+        length
     }
 
-    /// Moves the end on along its last segment; lines stay cut as they are.
-    pub(crate) fn slide(&mut self, id: TipId, to: Point) {
-        self.0[id.crack].slide(id.end, to);
+    /// Sets the end on its way to `target` with a new point, at the part `part` of the way, for which lines will be cut.
+    pub(crate) fn begin_increment(&mut self, id: TipId, target: Point, part: f64) {
+        let from = self.position(id);
+        self.grow(id, &[from + (target - from) * part]);
+        self.0[id.crack].ways[slot(id.end)].target = Some(target);
+    }
+
+    /// Where the increment ends that the end is on its way through; none between increments.
+    pub(crate) fn target(&self, id: TipId) -> Option<Point> {
+        self.of(id).ways[slot(id.end)].target
+    }
+
+    /// What is left of the increment that the end is on its way through [m]; none between increments.
+    pub(crate) fn left_of_increment(&self, id: TipId) -> Option<f64> {
+        self.of(id).left_of_increment(id.end)
+    }
+
+    /// Moves the end on by `distance` [m] along its increment, whose end it reaches when no more is left; lines stay cut
+    /// as they are.
+    pub(crate) fn slide(&mut self, id: TipId, distance: f64) {
+        let crack = &mut self.0[id.crack];
+        crack.slide(id.end, distance);
+        if let Some(tip) = crack.tip_mut(id.end) {
+            tip.add_grown(distance);
+        }
     }
 }

@@ -26,11 +26,19 @@ pub(crate) struct Crack {
     pub(crate) points: Vec<Point>,
     /// What the first and the last point are.
     ends: [CrackEnd; 2],
-    /// Where each end was when lines were last cut for it; a tip may have moved on since, within its increment. None
-    /// before a point was added there.
-    cut_at: [Option<Point>; 2],
+    /// How each end is on its way.
+    ways: [Way; 2],
     /// The tips at the first and the last point; none where the drawing has no live tip.
     tips: [Option<Tip>; 2],
+}
+
+/// How an end of a crack is on its way through an increment.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+struct Way {
+    /// Where the end was when lines were last cut for it; it may have moved on since. None before a point was added.
+    cut_at: Option<Point>,
+    /// Where the increment ends; none between increments.
+    target: Option<Point>,
 }
 
 /// A polyline with no segment longer than `longest` [m]; its own points stay. The faces of a crack are known at its
@@ -98,7 +106,7 @@ impl Crack {
             body: crack.body as u32,
             points: subdivided(&crack.points, 0.5 * scene.cell_size),
             ends,
-            cut_at: [None; 2],
+            ways: [Way::default(); 2],
             tips: [tip(End::Start, crack.start_live), tip(End::End, crack.end_live)],
         }
     }
@@ -106,7 +114,7 @@ impl Crack {
     /// A branch of the crack `trunk` that begins at it, with a tip at its end.
     pub(crate) fn branch(trunk: usize, body: u32, points: Vec<Point>, tip: Tip) -> Self {
         let ends = [CrackEnd::Junction { crack: trunk as u32 }, CrackEnd::Tip];
-        Self { body, points, ends, cut_at: [None; 2], tips: [None, Some(tip)] }
+        Self { body, points, ends, ways: [Way::default(); 2], tips: [None, Some(tip)] }
     }
 
     /// The tip at an end; none where the drawing has no live tip.
@@ -150,7 +158,8 @@ impl Crack {
         saved::ensure(has_length && self.points.iter().all(is_inside), "the line of a crack")?;
         let trunk = |end: &CrackEnd| if let CrackEnd::Junction { crack } = end { Some(*crack) } else { None };
         saved::below("the end of a crack", self.ends.iter().filter_map(trunk), count)?;
-        saved::ensure(self.cut_at.iter().flatten().all(is_inside), "the place of a tip")?;
+        let mut places = self.ways.iter().flat_map(|way| way.cut_at.iter().chain(&way.target));
+        saved::ensure(places.all(is_inside), "the place of a tip")?;
         self.tips.iter().flatten().try_for_each(Tip::check)
     }
 
@@ -161,7 +170,7 @@ impl Crack {
         let mut points = self.points.clone();
         let last = points.len() - 1;
         for (end, at) in ENDS.into_iter().zip([0, last]) {
-            if let (CrackEnd::Tip, Some(place)) = (self.end(end), self.cut_at[slot(end)]) {
+            if let (CrackEnd::Tip, Some(place)) = (self.end(end), self.ways[slot(end)].cut_at) {
                 points[at] = place;
             }
         }
@@ -196,19 +205,32 @@ impl Crack {
         }
     }
 
-    /// Adds a point at an end.
+    /// Adds a point at an end, for which lines will be cut.
     fn push(&mut self, end: End, point: Point) {
         match end {
             End::Start => self.points.insert(0, point),
             End::End => self.points.push(point),
         }
-        self.cut_at[slot(end)] = Some(point);
+        self.ways[slot(end)].cut_at = Some(point);
     }
 
-    /// Moves the point of an end on along its segment.
-    fn slide(&mut self, end: End, to: Point) {
-        let last = self.points.len() - 1;
-        self.points[if end == End::Start { 0 } else { last }] = to;
+    /// What is left of the increment that an end is on its way through [m]; none between increments.
+    fn left_of_increment(&self, end: End) -> Option<f64> {
+        self.ways[slot(end)].target.map(|target| (target - self.tip_position(end)).norm())
+    }
+
+    /// Moves the point of an end on by `distance` [m] along its increment, whose end it reaches when no more is left.
+    fn slide(&mut self, end: End, distance: f64) {
+        let Some(target) = self.ways[slot(end)].target else { return };
+        let (from, last) = (self.tip_position(end), self.points.len() - 1);
+        let left = (target - from).norm();
+        let place = &mut self.points[if end == End::Start { 0 } else { last }];
+        if distance >= left {
+            *place = target;
+            self.ways[slot(end)].target = None;
+        } else {
+            *place = from + (target - from) * (distance / left);
+        }
     }
 
     /// Length at rest [m].

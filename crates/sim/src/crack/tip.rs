@@ -3,7 +3,7 @@
 use super::assessment::Assessment;
 use super::guide::GuideWalk;
 use crate::saved::{self, Fits};
-use fissure_plane::{Point, Vector};
+use fissure_plane::Vector;
 use fissure_scene::TipState;
 use serde::{Deserialize, Serialize};
 
@@ -28,8 +28,6 @@ pub(crate) struct Tip {
     pub(crate) run_at_frame: f64,
     /// What was measured last.
     pub(crate) assessment: Assessment,
-    /// Where the increment ends that the tip is on its way through; none between increments.
-    pub(crate) target: Option<Point>,
     /// Energy that the tip has taken out of the body beyond the cost of its growth [J/m], never negative. It pays for
     /// growth to come, but at most for a small part of a cell.
     pub(crate) balance: f64,
@@ -51,7 +49,6 @@ impl Tip {
             grown: 0.0,
             run_at_frame: 0.0,
             assessment: Assessment::default(),
-            target: None,
             balance: f64::INFINITY,
             heading: Vector::zeros(),
         }
@@ -73,7 +70,7 @@ impl Tip {
         saved::finite(what, [&self.ahead_of_limit, &self.grown, &self.run_at_frame])?;
         saved::finite(what, [&m.j_integral, &m.mode_1, &m.mode_2, &m.kink_angle, &m.equivalent, &m.released])?;
         saved::finite(what, [&m.fracture_toughness, &m.contour_radius])?;
-        saved::finite(what, self.heading.iter().chain(self.target.iter().flat_map(|p| p.iter())))?;
+        saved::finite(what, &self.heading)?;
         // Both are infinite before the tip has grown.
         saved::ensure(!self.since_division.is_nan() && !self.balance.is_nan(), "the balance of a tip")?;
         self.guide.as_ref().map_or(Ok(()), GuideWalk::check)

@@ -52,7 +52,7 @@ fn after_kink(cracks: &Cracks, id: TipId, over: f64) -> Option<Vector> {
     let n = points.len();
     let at = |k: usize| if id.end == End::Start { points[k] } else { points[n - 1 - k] };
     // On its way through an increment the tip may have gone too little of it for a direction.
-    let tip = cracks.tip(id).and_then(|t| t.target).unwrap_or(at(0));
+    let tip = cracks.target(id).unwrap_or(at(0));
     let (mut ahead, mut way) = (tip - at(1), (at(0) - at(1)).norm());
     let direction = ahead.try_normalize(0.0)?;
     for k in 2..n {

@@ -114,7 +114,7 @@ impl Simulation {
                 }
                 return;
             }
-            if tip.target.is_none() {
+            if cracks.left_of_increment(id).is_none() {
                 if let Some(branches) = growth::branches(cracks, id, &assessed, &self.scene, &self.elastic) {
                     self.divide(id, branches, &assessed);
                     return;
@@ -138,24 +138,24 @@ impl Simulation {
     /// Sets a tip on its way through an increment, or at its end where tips only jump or the increment is not like
     /// others.
     fn begin_increment(&mut self, id: TipId, advance: &Advance, assessed: &Assessment) {
-        let from = self.state.cracks.position(id);
+        let cracks = &mut self.state.cracks;
         match advance.points[..] {
             [target]
                 if self.solver.sliding().is_some()
                     && advance.end == CrackEnd::Tip
                     && advance.state == TipState::Growing =>
             {
-                self.add_points(id, &[from + (target - from) * FIRST_PART], TipState::Growing);
-                if let Some(tip) = self.state.cracks.tip_mut(id) {
-                    tip.target = Some(target);
-                }
+                cracks.begin_increment(id, target, FIRST_PART);
             }
             _ => {
-                let length = self.add_points(id, &advance.points, advance.state);
+                let length = cracks.grow(id, &advance.points);
                 self.state.crack_energy += assessed.released.max(0.0) * length;
             }
         }
-        self.state.cracks.set_end(id, advance.end);
+        if let Some(tip) = cracks.tip_mut(id) {
+            tip.state = advance.state;
+        }
+        cracks.set_end(id, advance.end);
         if !advance.points.is_empty() {
             self.solver.recut(&self.state.cracks, &[id]);
             self.counts.recuts += 1;
@@ -169,9 +169,7 @@ impl Simulation {
     fn slide(&mut self, id: TipId, assessed: &Assessment, time: f64) -> bool {
         let cracks = &self.state.cracks;
         let Some(tip) = cracks.tip(id) else { return false };
-        let Some(target) = tip.target else { return true };
-        let from = cracks.position(id);
-        let left = (target - from).norm();
+        let Some(left) = cracks.left_of_increment(id) else { return true };
         let (cost, most) = match growth::cost(cracks, id, assessed, &self.scene, time) {
             Cost::Scheduled(due) => (0.0, due),
             Cost::Energy(cost) => (cost, f64::INFINITY),
@@ -187,14 +185,9 @@ impl Simulation {
             return false;
         }
         let taken = release(distance);
-        let to = if arrives { target } else { from + (target - from) * (distance / left) };
-        self.state.cracks.slide(id, to);
+        self.state.cracks.slide(id, distance);
         if let Some(tip) = self.state.cracks.tip_mut(id) {
-            tip.add_grown(distance);
             tip.balance = (balance + taken - cost * distance).max(0.0);
-            if arrives {
-                tip.target = None;
-            }
         }
         self.state.crack_energy += taken;
         if let Some(sliding) = self.solver.sliding_mut() {
@@ -212,33 +205,19 @@ impl Simulation {
         }
     }
 
-    /// Adds points to an end. Returns the length that they add [m].
-    fn add_points(&mut self, id: TipId, points: &[Point], state: TipState) -> f64 {
-        let cracks = &mut self.state.cracks;
-        let before = cracks.of(id).length();
-        for &p in points {
-            cracks.push(id, p);
-        }
-        let length = cracks.of(id).length() - before;
-        if let Some(tip) = cracks.tip_mut(id) {
-            tip.state = state;
-            tip.add_grown(length);
-        }
-        length
-    }
-
     /// Divides a tip: it goes on along the left branch, a new crack that begins at it along the right one.
     fn divide(&mut self, id: TipId, branches: [Vec<Point>; 2], assessed: &Assessment) {
         let from = self.state.cracks.position(id);
         let [left, right] = branches;
         // The first length of both together releases what one straight on would have.
-        let length = self.add_points(id, &left, TipState::Growing);
+        let length = self.state.cracks.grow(id, &left);
         self.state.crack_energy += assessed.released.max(0.0) * length;
         let mut points = vec![from];
         points.extend(right);
         let mut twin = Tip::new(None);
         twin.add_grown(points.windows(2).map(|w| (w[1] - w[0]).norm()).sum());
         if let Some(tip) = self.state.cracks.tip_mut(id) {
+            tip.state = TipState::Growing;
             tip.since_division = 0.0;
             // Each branch goes its own way from here.
             tip.guide = None;

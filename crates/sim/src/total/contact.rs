@@ -233,7 +233,7 @@ mod tests {
             let ahead = Vector::new(heading.cos(), heading.sin()) * (grown * total.lattice.grid.cell_size);
             if ahead != Vector::zeros() {
                 let id = TipId::new(0, End::End);
-                cracks.push(id, cracks.position(id) + ahead);
+                cracks.grow(id, &[cracks.position(id) + ahead]);
                 total.recut(&cracks, &[id]);
                 assert_nearest(&total, &cracks);
             }

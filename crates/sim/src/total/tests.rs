@@ -49,7 +49,7 @@ fn growth_keeps_mass_and_momentum() {
         let kinetic = total.kinetic_energy();
         let tip = cracks.position(TIP);
         let turn = Vector::new(0.21, if k % 3 == 0 { 0.08 } else { -0.05 }) * scene.cell_size;
-        cracks.push(TIP, tip + turn);
+        cracks.grow(TIP, &[tip + turn]);
         total.recut(&cracks, &[TIP]);
         let (linear_after, _) = total.momenta();
         assert!((total.lattice.layout.mass.iter().sum::<f64>() / mass - 1.0).abs() < 1e-12);
@@ -98,7 +98,7 @@ fn a_turning_crack_leaves_the_strain_as_it_is() {
     let ties = total.ties.energy(&total.motion.displacement);
     let lattice = total.energies().strain - ties;
     let tip = cracks.position(TIP);
-    cracks.push(TIP, tip + Vector::new(0.05, 0.1) * total.lattice.grid.cell_size);
+    cracks.grow(TIP, &[tip + Vector::new(0.05, 0.1) * total.lattice.grid.cell_size]);
     total.recut(&cracks, &[TIP]);
     let ties_after = total.ties.energy(&total.motion.displacement);
     let lattice_after = total.energies().strain - ties_after;
@@ -142,19 +142,20 @@ proptest! {
         let (mut total, mut cracks) = opened();
         let tip = cracks.position(TIP);
         let h = total.lattice.grid.cell_size;
-        cracks.push(TIP, tip + Vector::new(stands * h, 0.0));
+        let increment = total.scene.growth.increment;
+        let target = tip + Vector::new((stands + increment) * h, 0.0);
+        cracks.begin_increment(TIP, target, stands / (stands + increment));
         total.recut(&cracks, &[TIP]);
         // Displacements and velocities of one moment, so that both kicks see the same opening.
         total.stop();
-        let (before, distance) = (total.energies().strain, part * total.scene.growth.increment * h);
+        let (before, distance) = (total.energies().strain, part * increment * h);
         let release = total.release(&cracks, TIP);
         let [none, third, most, said] = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(|part| release(part * distance));
         drop(release);
         let steps = [third, most - third, said - most];
         prop_assert!(none.abs() < 1e-12 * said && steps[2] > 0.0, "{none:e} {steps:?}");
         prop_assert!(steps.is_sorted_by(|a, b| a >= b), "{steps:?}");
-        let from = cracks.position(TIP);
-        cracks.slide(TIP, from + Vector::new(distance, 0.0));
+        cracks.slide(TIP, distance);
         total.slide(&cracks, TIP);
         let taken = before - total.energies().strain;
         prop_assert!((taken / said - 1.0).abs() < 1e-9, "{said} {taken}");
@@ -169,9 +170,9 @@ fn a_tip_on_its_way_is_cut_as_it_was() {
     let increment = Vector::new(total.scene.growth.increment * total.lattice.grid.cell_size, 0.0);
     for _ in 0..8 {
         let from = cracks.position(TIP);
-        cracks.push(TIP, from + increment * 1e-3);
+        cracks.begin_increment(TIP, from + increment, 1e-3);
         total.recut(&cracks, &[TIP]);
-        cracks.slide(TIP, from + increment);
+        cracks.slide(TIP, increment.norm());
         total.slide(&cracks, TIP);
         let (fields, mass) = (total.lattice.len(), total.lattice.layout.mass.clone());
         let around = [(from - Vector::repeat(1.0), from + Vector::repeat(0.1))];
@@ -209,7 +210,7 @@ fn faces_meet_and_do_not_sink_in() {
     }
     let before = force(&total);
     let tip = cracks.position(TIP);
-    cracks.push(TIP, tip + Vector::new(0.1, 0.02) * total.lattice.grid.cell_size);
+    cracks.grow(TIP, &[tip + Vector::new(0.1, 0.02) * total.lattice.grid.cell_size]);
     total.recut(&cracks, &[TIP]);
     assert!((force(&total) - before).norm() < 1e-12 * before.norm(), "{before} {}", force(&total));
 }

@@ -358,7 +358,7 @@ fn growth_keeps_momentum_and_follows_the_material() {
     run.steps(100, 0.4 * run.solver.stable_time_step());
     let before = run.momentum();
     let target = Point::new(0.93, 0.62);
-    run.cracks.push(TipId::new(0, End::End), target);
+    run.cracks.grow(TipId::new(0, End::End), &[target]);
     let (solver, cracks) = (&mut run.solver, &run.cracks);
     solver.recut(cracks, &[TipId::new(0, End::End)]);
     assert_eq!(run.momentum(), before);
