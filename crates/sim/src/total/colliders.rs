@@ -106,7 +106,7 @@ impl Colliders {
 
 fn surface_nodes(lattice: &Lattice) -> Vec<SurfaceNode> {
     let h = lattice.grid.cell_size;
-    let mut volume = vec![0.0; lattice.len()];
+    let mut volume = vec![0.0; lattice.field_count()];
     let mut reader = lattice.reader();
     for p in 0..lattice.particles.len() {
         reader.for_each_entry(p, |field, w, _| volume[field] += lattice.particles.volume[p] * w);

@@ -40,7 +40,7 @@ impl Contacts {
     /// The pairs of `lattice`. `friction`: coefficient of friction; none where faces pass through each other.
     pub(super) fn new(friction: Option<f64>, lattice: &Lattice, cracks: &Cracks) -> Self {
         let mut pairs = Vec::new();
-        for node in lattice.layout.fields.divided_nodes() {
+        for node in lattice.fields().divided_nodes() {
             add_pairs_of_node(lattice, node, cracks, &mut pairs);
         }
         Self { pairs, friction }
@@ -53,10 +53,10 @@ impl Contacts {
 
     /// The same after a change: nodes elsewhere have the pairs they had.
     pub(super) fn refresh(&mut self, near: &Near, lattice: &Lattice, cracks: &Cracks) {
-        let node_of = |pair: &FacePair| lattice.layout.fields.node(pair.above as usize);
+        let node_of = |pair: &FacePair| lattice.fields().node(pair.above as usize);
         let mut pairs = Vec::with_capacity(self.pairs.len() + 32);
         let mut before = self.pairs.as_slice();
-        for node in lattice.layout.fields.divided_nodes() {
+        for node in lattice.fields().divided_nodes() {
             let skipped = before.partition_point(|pair| node_of(pair) < node);
             let (own, rest) = before[skipped..].split_at(before[skipped..].partition_point(|p| node_of(p) == node));
             before = rest;
@@ -141,7 +141,7 @@ impl FacePair {
 }
 
 fn add_pairs_of_node(lattice: &Lattice, node: usize, cracks: &Cracks, pairs: &mut Vec<FacePair>) {
-    for facing in lattice.layout.fields.facing_pairs(&lattice.fields_with_mass(node)) {
+    for facing in lattice.fields().facing_pairs(&lattice.fields_with_mass(node)) {
         let Some(line) = cracks.get(facing.crack as usize) else { continue };
         let [above, below] = facing.above_and_below();
         let segment = nearest_segment(lattice, facing.crack, line, lattice.grid.position(node));

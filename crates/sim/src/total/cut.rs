@@ -223,7 +223,7 @@ impl Lattice {
         }
         let stencils = stencils.into_iter().map(|p| (p, self.make_entries(p))).collect();
         self.layout.cut.replace(stencils);
-        let mut mass = vec![0.0; self.len()];
+        let mut mass = vec![0.0; self.field_count()];
         let mut reader = self.reader();
         for p in 0..self.particles.len() {
             let m = self.particles.mass[p];

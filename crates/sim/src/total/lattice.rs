@@ -146,8 +146,18 @@ impl Lattice {
         Reader::new(self)
     }
 
+    /// The fields at nodes.
+    pub(super) fn fields(&self) -> &Fields {
+        &self.layout.fields
+    }
+
+    /// Mass of each field [kg/m].
+    pub(super) fn mass(&self) -> &[f64] {
+        &self.layout.mass
+    }
+
     /// Number of fields.
-    pub(super) fn len(&self) -> usize {
+    pub(super) fn field_count(&self) -> usize {
         self.layout.fields.len()
     }
 
@@ -158,7 +168,7 @@ impl Lattice {
 
     /// Where the node of each field is on the lattice.
     pub(super) fn places_of_fields(&self) -> impl Iterator<Item = [i32; 2]> {
-        let further = self.grid.len()..self.len();
+        let further = self.grid.len()..self.field_count();
         let own = self.grid.nodes().map(|(_, place)| place);
         own.chain(further.map(|field| self.grid.place_of(self.layout.fields.node(field))))
     }

@@ -3,7 +3,7 @@
 use super::lattice::Lattice;
 use super::motion::{FieldVectors, Motion};
 use super::near::Near;
-use super::probes::Probe;
+use super::probe::Probe;
 use crate::SimulationError;
 use crate::boundary::loads::{self, ForcePlace};
 use fissure_plane::Vector;

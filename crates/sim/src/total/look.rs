@@ -3,7 +3,8 @@
 use super::contact::Contacts;
 use super::lattice::Lattice;
 use super::motion::Motion;
-use super::probes::{Probe, Probes};
+use super::probe::Probe;
+use super::probes::Probes;
 use super::reader::ParticleRates;
 use crate::crack::DIRECTION_LENGTH;
 use crate::crack::cracks::{Cracks, TipId};

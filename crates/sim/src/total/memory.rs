@@ -1,6 +1,6 @@
 //! What the solver holds, counted before it is there.
 
-use super::probes::Probe;
+use super::probe::Probe;
 use crate::grid::entries::Entry;
 use crate::grid::kernel;
 use crate::memory::amounts::{Amounts, Need};

@@ -20,6 +20,7 @@ mod look;
 pub(crate) mod memory;
 mod motion;
 mod near;
+mod probe;
 mod probes;
 mod range;
 mod reader;
@@ -156,13 +157,13 @@ impl Total {
     /// Crack faces that meet.
     fn resolve_contacts(&mut self, kick: f64, time_step: f64) {
         let Self { lattice, motion, probes, contacts, .. } = self;
-        contacts.resolve(&lattice.layout.mass, probes, motion, kick, time_step);
+        contacts.resolve(lattice.mass(), probes, motion, kick, time_step);
     }
 
     /// Supports, then colliders, at the time `time` [s].
     fn apply_boundaries(&mut self, time: f64) {
         let mut work = 0.0;
-        let mass = &self.lattice.layout.mass;
+        let mass = self.lattice.mass();
         self.supports.apply(&self.scene.supports, time, mass, &mut self.motion, &mut work);
         self.colliders.apply(time, mass, &mut self.motion, &mut work);
         self.external_work += work;
@@ -173,7 +174,7 @@ impl Total {
     fn count_work(&mut self, time: f64, time_step: f64) {
         let mut power = self.loads.power(&self.scene.loads, time, &self.motion);
         if self.scene.gravity != Vector::zeros() {
-            power += self.motion.power_of_gravity(&self.lattice.layout.mass, self.scene.gravity);
+            power += self.motion.power_of_gravity(self.lattice.mass(), self.scene.gravity);
         }
         self.external_work += power * time_step;
     }
@@ -226,7 +227,7 @@ impl Solver for Total {
         ties.share(&mut motion.force);
         // v += Δt f/m, then what changes velocities by impulses.
         let kick = motion.kick(&lattice.inverse_mass, scene.gravity, self.damping, time_step);
-        ties.apply_drag(&lattice.layout.mass, motion, cracks, kick);
+        ties.apply_drag(lattice.mass(), motion, cracks, kick);
         if self.contacts.are_possible() {
             self.contacts.forget_forces();
             self.resolve_contacts(kick, time_step);
@@ -253,11 +254,7 @@ impl Solver for Total {
         let boxes = recut::changed_boxes(cracks, changed, self.lattice.grid.cell_size);
         self.lattice.recut(cracks, &boxes, &mut self.motion);
         self.probes.refresh(&self.lattice, cracks, changed, &boxes);
-        // Particles at the rim of a box, up to two rows beyond it, have given mass to nodes outside it, or taken it
-        // from them.
-        let reach = Vector::repeat((self.lattice.reach() + 1.0) * self.lattice.grid.cell_size);
-        let boxes = boxes.into_iter().map(|(low, high)| (low - reach, high + reach)).collect();
-        let near = Near::new(boxes, cracks, changed, &points_before);
+        let near = Near::new(&self.lattice, &boxes, cracks, changed, &points_before);
         self.loads.refresh(&near, &self.lattice);
         self.supports.refresh(&near, &self.scene, &self.lattice);
         self.colliders.refresh(&near, &self.lattice);

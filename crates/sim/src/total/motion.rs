@@ -45,7 +45,7 @@ impl Motion {
 
     /// The motion at time zero: that of the particles.
     pub(super) fn initial(scene: &Scene, lattice: &Lattice) -> Self {
-        let (particles, mass) = (&lattice.particles, &lattice.layout.mass);
+        let (particles, mass) = (&lattice.particles, lattice.mass());
         let mut momentum = [vec![0.0; mass.len()], vec![0.0; mass.len()]];
         let mut any = false;
         let mut reader = lattice.reader();
@@ -60,7 +60,7 @@ impl Motion {
                 });
             }
         }
-        let mut initial = Self::at_rest(lattice.len());
+        let mut initial = Self::at_rest(lattice.field_count());
         if any {
             for axis in 0..2 {
                 for (d, &m) in mass.iter().enumerate() {

@@ -15,8 +15,19 @@ pub(super) struct Near {
 }
 
 impl Near {
-    /// `points_before`: number of points of each crack before it changed.
-    pub(super) fn new(boxes: Vec<(Point, Point)>, cracks: &Cracks, changed: &[TipId], points_before: &[usize]) -> Self {
+    /// Around the boxes within which stencils of `lattice` have changed, because `changed` ends have. `points_before`:
+    /// number of points of each crack before.
+    pub(super) fn new(
+        lattice: &Lattice,
+        boxes: &[(Point, Point)],
+        cracks: &Cracks,
+        changed: &[TipId],
+        points_before: &[usize],
+    ) -> Self {
+        // Particles at the rim of a box, up to two rows beyond it, have given mass to nodes outside it, or taken it
+        // from them.
+        let reach = Vector::repeat((lattice.reach() + 1.0) * lattice.grid.cell_size);
+        let boxes = boxes.iter().map(|(low, high)| (low - reach, high + reach)).collect();
         let shift = |(index, crack): (usize, &Crack)| match points_before.get(index) {
             Some(&before) if changed.contains(&TipId::new(index, End::Start)) => (crack.points.len() - before) as u32,
             _ => 0,
@@ -53,7 +64,7 @@ impl Near {
             nodes.extend(around.filter(|&(_, place)| self.contains(place)));
         }
         let further = |&(node, place): &(usize, Point)| {
-            lattice.layout.fields.of(node).iter().map(move |&field| (field as usize, place))
+            lattice.fields().of(node).iter().map(move |&field| (field as usize, place))
         };
         let mut fields: Vec<(usize, Point)> = nodes.iter().flat_map(further).collect();
         fields.append(&mut nodes);

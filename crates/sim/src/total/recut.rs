@@ -1,4 +1,4 @@
-//! Taking up a crack that has grown: stencils change only near it, and what a weight carries changes hands with it.
+//! Cutting anew where a crack has grown: stencils change only near it, and what a weight carries goes with the weight.
 //!
 //! A (particle, node) weight that moves to another field takes its share of the node's momentum along, so momentum is
 //! conserved to round-off and kinetic energy can only fall (fields merge inelastically). A field that is new takes the
@@ -60,7 +60,7 @@ fn changed_box(crack: &Crack, end: End, cell_size: f64) -> (Point, Point) {
 }
 
 impl Lattice {
-    /// Takes up the cracks as they are now; they have changed within `boxes`.
+    /// Divides the lattice by the cracks as they are now; stencils change within `boxes`.
     pub(super) fn recut(&mut self, cracks: &Cracks, boxes: &[(Point, Point)], motion: &mut Motion) {
         self.set_cracks(cracks);
         self.recut_particles(boxes, motion);
@@ -114,7 +114,7 @@ impl Lattice {
         }
     }
 
-    /// Notes per node how the weights of a particle move between its fields.
+    /// Notes, node by node, how the weights of a particle move between its fields.
     fn note_changes(&self, particle: usize, new: &[Entry], changes: &mut Vec<WeightChange>) {
         let mut weights: Vec<(u32, u32, f64)> = Vec::with_capacity(16);
         let mut add = |field: u32, w: f64| {
@@ -137,8 +137,8 @@ impl Lattice {
 
     /// Moves weights between the fields of nodes, and mass, momentum and displacement with them.
     fn move_weights(&mut self, changes: &[WeightChange], motion: &mut Motion) {
-        self.layout.mass.resize(self.len(), 0.0);
-        motion.resize(self.len());
+        self.layout.mass.resize(self.field_count(), 0.0);
+        motion.resize(self.field_count());
         let field_changes = field_changes(changes, motion);
         let smallest = NO_MASS * self.particles.mass.iter().copied().fold(f64::INFINITY, f64::min);
         for (field, t) in field_changes {

@@ -109,7 +109,7 @@ impl Lattice {
     pub(super) fn internal_forces(&self, u: &FieldVectors, with_misfits: bool, force: &mut FieldVectors) {
         for f in force.iter_mut() {
             f.clear();
-            f.resize(self.len(), 0.0);
+            f.resize(self.field_count(), 0.0);
         }
         let volume = self.particles.spacing * self.particles.spacing;
         let inverse_cell_size = 1.0 / self.grid.cell_size;

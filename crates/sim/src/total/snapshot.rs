@@ -2,7 +2,8 @@
 
 use super::lattice::Lattice;
 use super::motion::Motion;
-use super::probes::{Faces, Probe, Probes};
+use super::probe::Probe;
+use super::probes::{Faces, Probes};
 use super::ties::Ties;
 use crate::crack::Crack;
 use crate::crack::cracks::Cracks;
@@ -64,7 +65,7 @@ pub(super) fn crack_frames(cracks: &Cracks, probes: &Probes, motion: &Motion) ->
 
 /// Kinetic energy [J/m].
 pub(super) fn kinetic_energy(lattice: &Lattice, ties: &Ties, motion: &Motion) -> f64 {
-    let (mass, v) = (&lattice.layout.mass, &motion.velocity);
+    let (mass, v) = (lattice.mass(), &motion.velocity);
     let twice: f64 = (0..mass.len()).map(|d| mass[d] * (v[0][d] * v[0][d] + v[1][d] * v[1][d])).sum();
     0.5 * twice + ties.kinetic_energy(v)
 }
@@ -85,7 +86,7 @@ pub(super) fn strain_energy(lattice: &Lattice, ties: &Ties, motion: &Motion) -> 
 /// Linear [N s/m] and angular momentum about the origin [N s].
 pub(super) fn momenta(lattice: &Lattice, ties: &Ties, motion: &Motion) -> (Vector, f64) {
     let (mut linear, mut angular) = (Vector::zeros(), 0.0);
-    for ((d, &mass), place) in lattice.layout.mass.iter().enumerate().zip(lattice.places_of_fields()) {
+    for ((d, &mass), place) in lattice.mass().iter().enumerate().zip(lattice.places_of_fields()) {
         let place = lattice.grid.place(place).coords + motion.displacement(d);
         let momentum = motion.velocity(d) * mass;
         linear += momentum;

@@ -17,7 +17,7 @@ const RITZ_MARGIN: f64 = 1.01;
 /// Lanczos iteration on M^-½ K M^-½: its largest Ritz value closes in on ω_max² from below, much faster than a power
 /// iteration (Parlett 1998).
 pub(super) fn largest_time_step(lattice: &Lattice) -> f64 {
-    let fields = lattice.len();
+    let fields = lattice.field_count();
     let root: Vec<f64> = lattice.inverse_mass.iter().map(|m| m.sqrt()).collect();
     // A fixed start with all wavelengths in it, the shortest most, and the divided nodes, where the stiffest modes sit,
     // stressed.
@@ -118,7 +118,7 @@ pub(super) fn rayleigh_quotient(lattice: &Lattice, ties: &Ties, motion: &Motion)
     for (axis, velocity) in v.iter().enumerate() {
         for (d, &speed) in velocity.iter().enumerate() {
             stiffness += speed * change(axis, d);
-            mass += speed * speed * lattice.layout.mass[d];
+            mass += speed * speed * lattice.mass()[d];
         }
     }
     (mass > 0.0 && stiffness > 0.0).then(|| stiffness / mass)

@@ -76,7 +76,7 @@ impl Supports {
 
 /// Whether a support holds a field whose node is at `place` at rest.
 fn holds(selector: &Selector<'_>, lattice: &Lattice, field: usize, place: Point, bodies: &[u32]) -> bool {
-    if lattice.layout.mass[field] == 0.0 {
+    if lattice.mass()[field] == 0.0 {
         return false;
     }
     let (body, h) = (bodies[field] as usize, lattice.grid.cell_size);
@@ -86,7 +86,7 @@ fn holds(selector: &Selector<'_>, lattice: &Lattice, field: usize, place: Point,
 
 /// The body each field belongs to.
 fn body_of_fields(scene: &Scene, lattice: &Lattice) -> Vec<u32> {
-    let mut bodies = vec![0; lattice.len()];
+    let mut bodies = vec![0; lattice.field_count()];
     if scene.bodies.len() > 1 {
         let mut reader = lattice.reader();
         for p in 0..lattice.particles.len() {

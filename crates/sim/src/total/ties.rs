@@ -195,7 +195,7 @@ impl Ties {
         fields.dedup();
         let n = fields.len();
         let at = |field: u32| fields.partition_point(|&f| f < field);
-        let mass = |k: usize| lattice.layout.mass[fields[k] as usize];
+        let mass = |k: usize| lattice.mass()[fields[k] as usize];
         let mut matrix = nalgebra::DMatrix::from_fn(n, n, |i, j| if i == j { mass(i) } else { 0.0 });
         for tie in ties {
             let (a, b) = (at(tie.first), at(tie.second));
@@ -246,13 +246,13 @@ fn ties_at(lattice: &Lattice, cracks: &Cracks, id: TipId) -> Vec<Tie> {
             let arm = (place - tip) / h;
             let ahead = arm.dot(&direction);
             let is_tied = tie::is_tied(ahead, lattice.split_ahead());
-            if lattice.layout.fields.of(node).is_empty() || !is_tied || arm.perp(&direction).abs() > WINDOW {
+            if lattice.fields().of(node).is_empty() || !is_tied || arm.perp(&direction).abs() > WINDOW {
                 continue;
             }
             let fields = lattice.fields_with_mass(node);
             let stiffness: Vec<f64> = fields.iter().map(|&field| field_stiffness(lattice, field, place)).collect();
             let stiffness_of = |field: u32| fields.iter().zip(&stiffness).find(|f| *f.0 == field).map_or(0.0, |f| *f.1);
-            let facing = lattice.layout.fields.facing_pairs(&fields).filter(|pair| pair.crack as usize == id.crack);
+            let facing = lattice.fields().facing_pairs(&fields).filter(|pair| pair.crack as usize == id.crack);
             ties.extend(facing.map(|pair| {
                 let stiffness = [pair.first, pair.second].map(stiffness_of);
                 Tie::new([pair.first, pair.second], (node as u32, place), stiffness, ahead, measures)
