@@ -64,6 +64,10 @@ pub(crate) trait Snapshot {
     /// Energies now.
     fn energies(&self) -> SolverEnergies;
 
+    /// Kinetic and strain energy of one moment [J/m]. [`Snapshot::energies`] gives the kinetic energy of the velocities
+    /// that there are, which may be those of half a step before.
+    fn energy_of_moment(&self) -> f64;
+
     /// Kinetic energy [J/m]; cheap, unlike the other energies.
     fn kinetic_energy(&self) -> f64;
 

@@ -300,6 +300,10 @@ impl Snapshot for Total {
         }
     }
 
+    fn energy_of_moment(&self) -> f64 {
+        snapshot::energy_of_moment(&self.lattice, &self.ties, &self.motion)
+    }
+
     fn kinetic_energy(&self) -> f64 {
         snapshot::kinetic_energy(&self.lattice, &self.ties, &self.motion)
     }

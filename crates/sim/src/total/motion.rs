@@ -156,6 +156,11 @@ impl Motion {
         self.last_step = time_step;
     }
 
+    /// By how much the velocities lag behind the displacements between two steps [s].
+    pub(super) fn lag(&self) -> f64 {
+        if self.in_step { 0.0 } else { 0.5 * self.last_step }
+    }
+
     /// Work that gravity does at the present velocities, per time [W/m].
     pub(super) fn power_of_gravity(&self, mass: &[f64], gravity: Vector) -> f64 {
         let v = &self.velocity;

@@ -1,7 +1,8 @@
 //! What is read of the solver: particles, outlines and cracks as frames hold them, energies and momenta.
 
+use super::internal_forces;
 use super::lattice::Lattice;
-use super::motion::Motion;
+use super::motion::{FieldVectors, Motion};
 use super::probe::Probe;
 use super::probes::{Faces, Probes};
 use super::ties::Ties;
@@ -81,6 +82,18 @@ pub(super) fn strain_energy(lattice: &Lattice, ties: &Ties, motion: &Motion) -> 
         })
         .sum::<f64>()
         + ties.energy(&motion.displacement)
+}
+
+/// Kinetic and strain energy of one moment [J/m], that of the displacements.
+///
+/// What the leapfrog keeps is ½ v(t − Δt/2) · M v(t + Δt/2) + U(t). The later velocity is the earlier one after a kick
+/// by the forces of now, so this is the sum of the two energies with half the work of the forces over a step besides.
+pub(super) fn energy_of_moment(lattice: &Lattice, ties: &Ties, motion: &Motion) -> f64 {
+    let mut force = FieldVectors::default();
+    internal_forces(lattice, ties, &motion.displacement, &mut force);
+    let power: f64 =
+        motion.velocity.iter().flatten().zip(force.iter().flatten()).map(|(speed, force)| speed * force).sum();
+    kinetic_energy(lattice, ties, motion) + strain_energy(lattice, ties, motion) + motion.lag() * power
 }
 
 /// Linear [N s/m] and angular momentum about the origin [N s].

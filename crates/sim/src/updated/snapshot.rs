@@ -32,6 +32,12 @@ impl Snapshot for Updated {
         }
     }
 
+    fn energy_of_moment(&self) -> f64 {
+        // Forces at the new places would need the grid of the next step.
+        let now = self.energies();
+        now.kinetic + now.strain
+    }
+
     fn kinetic_energy(&self) -> f64 {
         self.points.kinetic_energy(&self.setup)
     }
