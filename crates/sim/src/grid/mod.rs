@@ -16,10 +16,11 @@
 pub(crate) mod entries;
 pub(crate) mod fields;
 pub(crate) mod kernel;
+mod laying;
 pub(crate) mod scan;
 pub(crate) mod spans;
+pub(crate) mod walker;
 
-use crate::grid::kernel::{MAX_WIDTH, Stencil};
 use crate::grid::spans::{Span, SpanRows};
 use fissure_scene::{Point, Vector};
 use std::ops::Range;
@@ -58,17 +59,6 @@ pub(crate) struct GridRow {
     pub(crate) nodes: Range<usize>,
 }
 
-/// Neighbouring cells that particles are in, while a grid is laid.
-#[derive(Debug, Clone, Copy)]
-struct Patch {
-    /// Band of the cells.
-    band: i32,
-    /// Lowest and highest band that stencils from there reach.
-    reached: [i32; 2],
-    /// First and last column of the cells.
-    columns: [i32; 2],
-}
-
 fn band_of(row: i32) -> i32 {
     row.div_euclid(BAND as i32)
 }
@@ -96,60 +86,6 @@ impl Grid {
             bands: SpanRows::default(),
             first_node: Vec::new(),
         })
-    }
-
-    /// Takes over the nodes of `before`. They are of use when both have the same places; that is returned.
-    pub(crate) fn take_nodes(&mut self, before: &mut Self) -> bool {
-        self.bands = std::mem::take(&mut before.bands);
-        self.first_node = std::mem::take(&mut before.first_node);
-        self.origin == before.origin && self.cell_size == before.cell_size
-    }
-
-    /// Makes the nodes of all stencils of `width` nodes per axis whose lowest nodes are `lowest`, with `room` more
-    /// cells around each.
-    pub(crate) fn lay(&mut self, lowest: impl Iterator<Item = [i32; 2]>, width: usize, room: i32) {
-        let reach = width as i32 - 1 + room;
-        let mut patches: Vec<Patch> = Vec::new();
-        for [i, j] in lowest {
-            let (band, reached) = (band_of(j), [band_of(j - room), band_of(j + reach)]);
-            match patches.last_mut() {
-                // Particles side by side follow each other.
-                Some(p) if p.band == band && i >= p.columns[0] - LARGEST_GAP && i <= p.columns[1] + LARGEST_GAP => {
-                    p.columns = [p.columns[0].min(i), p.columns[1].max(i)];
-                    p.reached = [p.reached[0].min(reached[0]), p.reached[1].max(reached[1])];
-                }
-                _ => patches.push(Patch { band, reached, columns: [i, i] }),
-            }
-        }
-        let columns = |p: &Patch| (p.columns[0] - room, p.columns[1] + reach + 1);
-        let mut runs: Vec<(i32, (i32, i32))> =
-            patches.iter().flat_map(|p| (p.reached[0]..=p.reached[1]).map(move |band| (band, columns(p)))).collect();
-        runs.sort_unstable();
-        runs.dedup_by(|next, run| {
-            let joins = next.0 == run.0 && next.1.0 <= run.1.1 + LARGEST_GAP;
-            if joins {
-                run.1.1 = run.1.1.max(next.1.1);
-            }
-            joins
-        });
-        self.number(&runs);
-    }
-
-    /// Numbers the nodes of (band, (first column, column after the last)), which are sorted.
-    fn number(&mut self, runs: &[(i32, (i32, i32))]) {
-        self.bands.clear();
-        self.first_node.clear();
-        let mut node = 0;
-        for of_band in runs.chunk_by(|a, b| a.0 == b.0) {
-            self.first_node.push(node);
-            let mut number = 0;
-            for &(band, (first, end)) in of_band {
-                self.bands.push(band, Span { first, end, number });
-                number += (end - first) as u32;
-            }
-            node += number * BAND as u32;
-        }
-        self.first_node.push(node);
     }
 
     /// Number of nodes.
@@ -199,12 +135,6 @@ impl Grid {
         let band = self.bands.index_of(band_of(j))?;
         let span = self.bands.span_with(band, i)?;
         Some(self.band_nodes(band, row_in_band(j)).start + span.number as usize + (i - span.first) as usize)
-    }
-
-    /// The nodes of a stencil.
-    pub(crate) fn stencil(&self, stencil: &Stencil) -> StencilNodes<'_> {
-        let rows = Walker::new(self).rows(stencil.first, stencil.width);
-        StencilNodes { grid: self, lowest: stencil.first, width: stencil.width, rows }
     }
 
     /// Where a node is on the lattice: (i, j).
@@ -295,128 +225,6 @@ impl Grid {
     }
 }
 
-/// Finds the nodes of stencils, at next to no cost where each is close to the one before.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Walker<'a> {
-    grid: &'a Grid,
-    /// The spans that were found last in an even and in an odd band.
-    found: [Found; 2],
-}
-
-/// A span with what it takes to number its nodes.
-#[derive(Debug, Clone, Copy)]
-struct Found {
-    band: i32,
-    /// Index of the band's lowest row among all.
-    row: usize,
-    first: i32,
-    end: i32,
-    /// Node in the first column of the lowest row of the band.
-    node: usize,
-    /// Nodes in a row of the band.
-    width: usize,
-}
-
-impl<'a> Walker<'a> {
-    /// A walker that has not found anything yet.
-    pub(crate) fn new(grid: &'a Grid) -> Self {
-        Self { grid, found: [Found { band: i32::MIN, row: 0, first: 0, end: 0, node: 0, width: 0 }; 2] }
-    }
-
-    /// First node of each row of a stencil of `width` nodes per axis whose lowest node is at `lowest`; none unless all
-    /// of its nodes exist.
-    #[inline(always)]
-    pub(crate) fn rows(&mut self, lowest: [i32; 2], width: usize) -> Option<[usize; MAX_WIDTH]> {
-        let [i, j] = lowest;
-        let (band, row) = (band_of(j), row_in_band(j));
-        let lower = self.span(band, i, width)?;
-        let at = lower.node + (i - lower.first) as usize + row * lower.width;
-        let mut rows = [0; MAX_WIDTH];
-        for b in 0..width {
-            rows[b] = at + b * lower.width;
-        }
-        if row + width > BAND {
-            let upper = self.span(band + 1, i, width)?;
-            let at = upper.node + (i - upper.first) as usize;
-            for b in BAND - row..width {
-                rows[b] = at + (row + b - BAND) * upper.width;
-            }
-        }
-        Some(rows)
-    }
-
-    /// Index of the row of the lowest nodes of such a stencil; none unless all of its nodes exist.
-    #[inline(always)]
-    pub(crate) fn lowest_row(&mut self, lowest: [i32; 2], width: usize) -> Option<usize> {
-        let [i, j] = lowest;
-        let (band, row) = (band_of(j), row_in_band(j));
-        let lower = self.span(band, i, width)?;
-        if row + width > BAND {
-            self.span(band + 1, i, width)?;
-        }
-        Some(lower.row + row)
-    }
-
-    /// The span of `band` that holds `width` columns from `column` on.
-    #[inline(always)]
-    fn span(&mut self, band: i32, column: i32, width: usize) -> Option<Found> {
-        let last = &mut self.found[(band & 1) as usize];
-        let fits = |found: &Found| found.band == band && found.first <= column && column + width as i32 <= found.end;
-        if !fits(last) {
-            *last = self.grid.find(band, column)?;
-        }
-        Some(*last).filter(fits)
-    }
-}
-
-impl Grid {
-    #[cold]
-    fn find(&self, band: i32, column: i32) -> Option<Found> {
-        let index = self.bands.index_of(band)?;
-        let span = self.bands.span_with(index, column)?;
-        Some(Found {
-            band,
-            row: index * BAND,
-            first: span.first,
-            end: span.end,
-            node: self.first_node[index] as usize + span.number as usize,
-            width: self.width(index),
-        })
-    }
-}
-
-/// The nodes of a stencil, some of which may not exist; (a, b) counts them along x and y.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct StencilNodes<'a> {
-    grid: &'a Grid,
-    lowest: [i32; 2],
-    width: usize,
-    /// First node of each row, where all nodes exist.
-    rows: Option<[usize; MAX_WIDTH]>,
-}
-
-impl StencilNodes<'_> {
-    /// The nodes of the stencil that differ from (a, b) by one, in a first.
-    pub(crate) fn near(&self, a: usize, b: usize) -> impl Iterator<Item = usize> {
-        let beside = |k: usize| [k.wrapping_sub(1), k + 1].into_iter().filter(|&k| k < self.width);
-        let places = beside(a).map(move |a| (a, b)).chain(beside(b).map(move |b| (a, b)));
-        places.chain(beside(a).flat_map(move |a| beside(b).map(move |b| (a, b)))).filter_map(|(a, b)| self.at(a, b))
-    }
-
-    /// Where node (a, b) of the stencil is, be it there or not [m].
-    pub(crate) fn place(&self, a: usize, b: usize) -> Point {
-        self.grid.place([self.lowest[0].wrapping_add(a as i32), self.lowest[1].wrapping_add(b as i32)])
-    }
-
-    /// Node (a, b) of the stencil.
-    pub(crate) fn at(&self, a: usize, b: usize) -> Option<usize> {
-        match self.rows {
-            Some(rows) => Some(rows[b] + a),
-            None => self.grid.node([self.lowest[0].checked_add(a as i32)?, self.lowest[1].checked_add(b as i32)?]),
-        }
-    }
-}
-
 /// Cuts `values` at `ranges`, which rise and do not overlap.
 pub(crate) fn pieces<T>(
     values: &mut [T],
@@ -434,6 +242,7 @@ pub(crate) fn pieces<T>(
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
+    use super::walker::Walker;
     use super::*;
     use proptest::prelude::*;
     use std::collections::{BTreeMap, BTreeSet};

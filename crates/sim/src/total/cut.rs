@@ -3,8 +3,8 @@
 use super::lattice::Lattice;
 use super::motion::FieldVectors;
 use super::rows::Run;
-use crate::grid::Walker;
 use crate::grid::entries::{Entries, Entry};
+use crate::grid::walker::Walker;
 use crate::material::elastic::Elastic;
 use crate::particles::Particles;
 use crate::saved::{self, Fits};

@@ -2,7 +2,7 @@
 
 use super::lattice::Lattice;
 use super::motion::{FieldVectors, Motion, at};
-use crate::grid::Walker;
+use crate::grid::walker::Walker;
 use fissure_plane::{Matrix, Vector};
 
 /// Reads fields at particles. Particles that follow each other share most of their nodes, which one reader does not

@@ -5,9 +5,9 @@ use super::nodes::Nodes;
 use super::particles_to_grid::{arms, first};
 use super::points::{MaterialPoint, Motion};
 use super::setup::Setup;
-use crate::grid::Walker;
 use crate::grid::entries::Entry;
 use crate::grid::kernel::{self, Stencil};
+use crate::grid::walker::Walker;
 use crate::threads::prelude::*;
 use fissure_scene::{Kernel, Matrix, Transfer, Vector};
 

@@ -6,7 +6,8 @@ use crate::crack::division::{Division, TipCut};
 use crate::grid::entries::{Entries, Entry};
 use crate::grid::fields::Fields;
 use crate::grid::kernel::{self, Stencil};
-use crate::grid::{BAND, Grid, Walker};
+use crate::grid::walker::Walker;
+use crate::grid::{BAND, Grid};
 use fissure_scene::{Kernel, Point, Vector};
 use std::ops::Range;
 

@@ -8,7 +8,8 @@ use super::lattice::Lattice;
 use super::nodes::Nodes;
 use super::points::Points;
 use super::setup::Setup;
-use crate::grid::{Walker, kernel, pieces};
+use crate::grid::walker::Walker;
+use crate::grid::{kernel, pieces};
 use crate::threads::prelude::*;
 use fissure_scene::{Matrix, Vector};
 
