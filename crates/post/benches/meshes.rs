@@ -6,11 +6,11 @@
 //! | solid | a frame made a checked solid: boolean, triangles, extrusion |
 //! | export | its file in memory |
 //!
-//! Here each edge of the result knows where it came from, and places are exact to the grid step in 64 bits; with `geo` no
-//! edge does, and places have 32 bits of the size of the whole.
+//! Here each edge of the result knows where it came from, and places are exact to the grid step in 64 bits; with `geo`
+//! no edge does, and places have 32 bits of the size of the whole.
 //!
-//! Before that 10,000 openings from 1e-9 to 1e-1 m are taken off a plate with both engines, and it is told how many areas
-//! come out wrong.
+//! Before that 10,000 openings from 1e-9 to 1e-1 m are taken off a plate with both engines, and it is told how many
+//! areas come out wrong.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 #[path = "../tests/common/mod.rs"]
@@ -61,8 +61,8 @@ fn uniform() -> impl FnMut() -> f64 {
     }
 }
 
-/// A triangle whose base of some width lies 1 m above the plate and whose tip is in the plate, and the area that the two
-/// have in common [m²].
+/// A triangle whose base of some width lies 1 m above the plate and whose tip is in the plate, and the area that the
+/// two have in common [m²].
 fn opening(next: &mut impl FnMut() -> f64) -> (Ring, f64) {
     let width = ((10.0_f64.powf(-9.0 + 8.0 * next()) / STEP).round() as i64).max(1);
     let above = HALF + 524_288;

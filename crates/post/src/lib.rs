@@ -13,7 +13,8 @@
 //! 5. `pinch`: contours that touch in a point are parted, so that the solid is manifold for every reader.
 //! 6. `triangulate`, `extrude`: caps and walls, with normals, texture coordinates, velocities and material slots.
 //! 7. [`Mesh::check`]: closed, manifold, oriented, volume = area × thickness, in the precision of the file.
-//! 8. `glb`, `ply`: the bytes of files; `write`, `manifest`: the files, with the feature `files`, which is on by default.
+//! 8. `glb`, `ply`: the bytes of files; `write`, `manifest`: the files, with the feature `files`, which is on by
+//!    default.
 //!
 //! Promised: every solid that is returned has passed the check. Not promised: that polygons of different bodies, or of
 //! fragments that the simulation lets overlap in different bodies, stay apart; openings below two grid steps (4e-6 m in

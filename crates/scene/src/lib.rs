@@ -6,8 +6,8 @@
 //! [`load`] reads a scene file and its drawing, [`load_with_warnings`] also says what will hardly go well; scenes made
 //! in code call [`Scene::validate`].
 //!
-//! Reading scene files is the feature `load`, takes are the feature `take`; both are on by default. What is left without
-//! them touches no file.
+//! Reading scene files is the feature `load`, takes are the feature `take`; both are on by default. What is left
+//! without them touches no file.
 
 mod curve;
 #[cfg(feature = "load")]

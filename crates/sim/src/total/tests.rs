@@ -135,8 +135,8 @@ fn ties_ask_for_no_shorter_step() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(16))]
 
-    /// Truth: ½ Δk δ². What a tip is said to release is what the ties lose when it slides, wherever in a cell it stands;
-    /// it rises with the way, ever less steeply, and standing still releases nothing.
+    /// Truth: ½ Δk δ². What a tip is said to release is what the ties lose when it slides, wherever in a cell it
+    /// stands; it rises with the way, ever less steeply, and standing still releases nothing.
     #[test]
     fn a_sliding_tip_takes_what_was_said(stands in 0.01_f64..1.0, part in 0.05_f64..1.0) {
         let (mut total, mut cracks) = opened();

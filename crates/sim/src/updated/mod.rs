@@ -123,7 +123,8 @@ impl Updated {
         Ok(solver)
     }
 
-    /// Goes on from what [`Snapshot::save`](crate::solver::Snapshot::save) gave, bit for bit. `cracks` are those of the same moment.
+    /// Goes on from what [`Snapshot::save`](crate::solver::Snapshot::save) gave, bit for bit. `cracks` are those of the
+    /// same moment.
     ///
     /// # Errors
     /// [`SimulationError::BadState`] when the bytes are damaged or belong to another scene.

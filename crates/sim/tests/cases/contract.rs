@@ -56,7 +56,8 @@ fn open(scene: &mut Scene, speed: f64) {
     set_velocity(scene, Selection::Region(rectangle([-1.0, 0.56], [2.0, 2.0])), [0.0, speed]);
 }
 
-/// Kinetic and strain energy belong to moments half a step apart, so that their sum ripples with the square of the step.
+/// Kinetic and strain energy belong to moments half a step apart, so that their sum ripples with the square of the
+/// step.
 const FINE: f64 = 0.1;
 
 fn largest_stress(frame: &Frame) -> f64 {
