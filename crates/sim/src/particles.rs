@@ -4,8 +4,8 @@ use crate::SimulationError;
 use crate::boundary::selector::Selector;
 use crate::grid::scan::Places;
 use crate::grid::spans::{Span, SpanRows};
-use fissure_plane::{Point, Vector, bounds};
-use fissure_scene::{KeyPath, Scene, SceneFault, Selection};
+use fissure_plane::{Matrix, Point, Vector, bounds};
+use fissure_scene::{KeyPath, ParticleFrame, Scene, SceneFault, Selection};
 use std::ops::Range;
 
 /// The particles of all bodies at rest, in the order body, row, column. Shape: one entry per particle in every list.
@@ -118,6 +118,29 @@ impl Particles {
         self.within([first.x, first.y], [last.x, last.y])
     }
 
+    /// The particles as a frame holds them, pieces left 0; `now` tells of each particle how it is.
+    pub(crate) fn frame(&self, mut now: impl FnMut(usize) -> ParticleNow) -> ParticleFrame {
+        let n = self.len();
+        let mut frame = ParticleFrame {
+            id: (0..n as u32).collect(),
+            body: self.body.clone(),
+            piece: vec![0; n],
+            rest: self.rest.clone(),
+            position: Vec::with_capacity(n),
+            velocity: Vec::with_capacity(n),
+            deformation_gradient: Vec::with_capacity(n),
+            cauchy_stress: Vec::with_capacity(n),
+        };
+        for p in 0..n {
+            let ParticleNow { position, velocity, gradient, cauchy_stress } = now(p);
+            frame.position.push(position);
+            frame.velocity.push(velocity);
+            frame.deformation_gradient.push(Matrix::identity() + gradient);
+            frame.cauchy_stress.push(cauchy_stress);
+        }
+        frame
+    }
+
     /// Number of particles.
     pub(crate) fn len(&self) -> usize {
         self.rest.len()
@@ -177,6 +200,19 @@ impl Particles {
         };
         SceneFault::new(path, format!("{array} {} selects no particle: {why}", index + 1), remedy)
     }
+}
+
+/// How a particle is at one moment.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ParticleNow {
+    /// [m].
+    pub(crate) position: Point,
+    /// [m/s].
+    pub(crate) velocity: Vector,
+    /// Displacement gradient H = F − I [–].
+    pub(crate) gradient: Matrix,
+    /// [Pa].
+    pub(crate) cauchy_stress: Matrix,
 }
 
 /// How a particle moves at time zero.

@@ -2,6 +2,7 @@
 
 use super::tip::Tip;
 use super::{Crack, slot};
+use crate::crack::division::CrackLine;
 use crate::saved::{self, Fits};
 use fissure_scene::{CrackEnd, End, Point, Scene, Vector};
 use serde::{Deserialize, Serialize};
@@ -101,6 +102,14 @@ impl Cracks {
     /// Unit vector of the last segment at rest, pointing ahead of the end.
     pub(crate) fn last_direction(&self, id: TipId) -> Vector {
         self.of(id).last_direction(id.end)
+    }
+
+    /// The cracks as the division sees them, their points being where `points` puts those of a crack (its number, the
+    /// crack); pairs reach over `reach` [m] along an axis.
+    pub(crate) fn lines(&self, points: impl Fn(usize, &Crack) -> Vec<Point>, reach: f64) -> Vec<CrackLine> {
+        // A line from a particle inside the body to a node outside may pass a mouth by as much as the kernel reaches.
+        let beyond = 2.0 * reach;
+        self.iter().enumerate().map(|(i, crack)| crack.line(i, points(i, crack), beyond)).collect()
     }
 
     /// Adds a crack. Returns its number.

@@ -18,6 +18,11 @@ pub(crate) const fn width(kernel: Kernel) -> usize {
     }
 }
 
+/// How far a particle sees nodes along an axis, in cells.
+pub(crate) fn reach(kernel: Kernel) -> f64 {
+    0.5 * width(kernel) as f64
+}
+
 /// Weights along one axis. Entries from the kernel's width on are zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct AxisStencil {

@@ -13,6 +13,7 @@ use super::motion::Motion;
 use super::near::Near;
 use super::probes::Probes;
 use crate::crack::Crack;
+use crate::crack::contact::face_impulse;
 use crate::crack::cracks::Cracks;
 use fissure_plane::{Point, Vector};
 
@@ -103,25 +104,13 @@ impl Contacts {
                 continue;
             }
             let Some(n) = probes.segment_normal(pair.crack, pair.segment, motion) else { continue };
-            let approach = speed.dot(&n);
             // What is left of the gap may be used up in this step; faces that overlap stay as they are.
             let allowed = -gap.dot(&n).max(0.0) / time_step;
-            if approach >= allowed {
-                continue;
-            }
-            let (mass_a, mass_b) = (mass[a], mass[b]);
-            let reduced = mass_a * mass_b / (mass_a + mass_b);
-            let sliding = speed - n * approach;
-            let sliding_speed = sliding.norm();
-            let mut impulse = n * ((allowed - approach) * reduced);
-            if friction > 0.0 && sliding_speed > 0.0 {
-                let most = friction * (allowed - approach);
-                impulse -= sliding * (reduced * (most / sliding_speed).min(1.0));
-            }
+            let Some(impulse) = face_impulse(speed, n, allowed, [mass[a], mass[b]], friction) else { continue };
             for axis in 0..2 {
                 pair.force[axis] += impulse[axis] / kick;
-                motion.velocity[axis][a] += impulse[axis] / mass_a;
-                motion.velocity[axis][b] -= impulse[axis] / mass_b;
+                motion.velocity[axis][a] += impulse[axis] / mass[a];
+                motion.velocity[axis][b] -= impulse[axis] / mass[b];
             }
         }
     }

@@ -6,7 +6,7 @@ use super::reader::Reader;
 use super::rows::Run;
 use crate::SimulationError;
 use crate::crack::cracks::Cracks;
-use crate::crack::division::{CrackLine, Division, TipCut};
+use crate::crack::division::{Division, TipCut};
 use crate::grid::Grid;
 use crate::grid::fields::Fields;
 use crate::grid::kernel;
@@ -94,11 +94,8 @@ impl Lattice {
 
     /// Divides pairs by `cracks` from now on.
     pub(super) fn set_cracks(&mut self, cracks: &Cracks) {
-        // A line from a particle inside the body to a node outside may pass a mouth by as much as the kernel reaches.
         let reach = self.reach();
-        let beyond = 2.0 * reach * self.grid.cell_size;
-        let lines: Vec<CrackLine> =
-            cracks.iter().enumerate().map(|(i, c)| c.line(i, c.points_as_cut(), beyond)).collect();
+        let lines = cracks.lines(|_, crack| crack.points_as_cut(), reach * self.grid.cell_size);
         let cut = TipCut::tied(self.split_ahead);
         self.division =
             Division::new(&lines, self.tip_division, cut, self.grid.cell_size, self.particles.spacing, reach);
@@ -133,7 +130,7 @@ impl Lattice {
 
     /// How far a particle sees nodes along an axis, in cells.
     pub(super) fn reach(&self) -> f64 {
-        0.5 * kernel::width(self.kernel) as f64
+        kernel::reach(self.kernel)
     }
 
     /// The weights of a place at the nodes around it.

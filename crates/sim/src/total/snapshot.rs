@@ -9,33 +9,22 @@ use super::ties::Ties;
 use crate::crack::Crack;
 use crate::crack::cracks::Cracks;
 use crate::faces::crack_frame::crack_frame;
+use crate::particles::ParticleNow;
 use fissure_plane::{Matrix, Point, Vector};
 use fissure_scene::{CrackFrame, OutlineFrame, ParticleFrame, Scene};
 
 /// The particles as a frame holds them, pieces left 0.
 pub(super) fn particle_frame(lattice: &Lattice, motion: &Motion) -> ParticleFrame {
-    let particles = &lattice.particles;
-    let n = particles.len();
-    let mut frame = ParticleFrame {
-        id: (0..n as u32).collect(),
-        body: particles.body.clone(),
-        piece: vec![0; n],
-        rest: particles.rest.clone(),
-        position: Vec::with_capacity(n),
-        velocity: Vec::with_capacity(n),
-        deformation_gradient: Vec::with_capacity(n),
-        cauchy_stress: Vec::with_capacity(n),
-    };
     let mut reader = lattice.reader();
-    for p in 0..n {
-        let e = lattice.material(p);
-        let now = reader.motion(p, motion);
-        frame.position.push(particles.rest[p] + now.displacement);
-        frame.velocity.push(now.velocity);
-        frame.deformation_gradient.push(Matrix::identity() + now.strain);
-        frame.cauchy_stress.push(crate::cauchy_stress(&now.strain, e.mu, e.lambda));
-    }
-    frame
+    lattice.particles.frame(|p| {
+        let (e, now) = (lattice.material(p), reader.motion(p, motion));
+        ParticleNow {
+            position: lattice.particles.rest[p] + now.displacement,
+            velocity: now.velocity,
+            gradient: now.strain,
+            cauchy_stress: crate::cauchy_stress(&now.strain, e.mu, e.lambda),
+        }
+    })
 }
 
 /// Of each particle: position [m], velocity [m/s], displacement gradient H = F − I [–].

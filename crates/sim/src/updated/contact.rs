@@ -16,6 +16,7 @@ use super::lattice::Lattice;
 use super::nodes::Nodes;
 use super::points::Points;
 use super::setup::Setup;
+use crate::crack::contact::face_impulse;
 use crate::crack::crossing::Side;
 use crate::grid::fields::Fields;
 use crate::grid::kernel;
@@ -202,22 +203,12 @@ impl Contacts {
         for pair in &mut self.overlaps {
             let (a, b) = (pair.above as usize, pair.below as usize);
             let speed = nodes.velocity(a) - nodes.velocity(b);
-            let approach = speed.dot(&pair.normal);
-            if approach >= 0.0 {
-                continue;
-            }
-            let (mass_a, mass_b) = (nodes.mass[a], nodes.mass[b]);
-            let reduced = mass_a * mass_b / (mass_a + mass_b);
-            let sliding = speed - pair.normal * approach;
-            let sliding_speed = sliding.norm();
-            let mut impulse = pair.normal * (-approach * reduced);
-            if friction > 0.0 && sliding_speed > 0.0 {
-                impulse -= sliding * (reduced * (friction * -approach / sliding_speed).min(1.0));
-            }
+            let mass = [nodes.mass[a], nodes.mass[b]];
+            let Some(impulse) = face_impulse(speed, pair.normal, 0.0, mass, friction) else { continue };
             for axis in 0..2 {
                 pair.force[axis] += impulse[axis] / time_step;
-                nodes.after[axis][a] += impulse[axis] / mass_a;
-                nodes.after[axis][b] -= impulse[axis] / mass_b;
+                nodes.after[axis][a] += impulse[axis] / mass[0];
+                nodes.after[axis][b] -= impulse[axis] / mass[1];
             }
         }
     }

@@ -8,7 +8,7 @@ use crate::SimulationError;
 use crate::crack::Crack;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::crossing::Side;
-use crate::crack::division::{CrackLine, Division, TipCut};
+use crate::crack::division::{Division, TipCut};
 use crate::faces::outlines::Outlines;
 use crate::grid::kernel;
 use crate::saved::{self, Fits};
@@ -273,18 +273,14 @@ impl Faces {
     /// The cracks where they are now, ready to divide pairs.
     pub(super) fn division(&self, setup: &Setup, cracks: &Cracks) -> Division {
         let scene = &setup.scene;
-        // A line from a particle inside the body to a node outside may pass a mouth by as much as the kernel reaches.
-        let reach = 0.5 * kernel::width(scene.solver.kernel) as f64;
-        let beyond = 2.0 * reach * scene.cell_size;
+        let reach = kernel::reach(scene.solver.kernel);
         // Lines that are torn too long end the next step; till then they lie at rest.
         let holds = self.holds_together(setup);
-        let points = |crack: &Crack, now: &CrackNow| if holds { now.position.clone() } else { crack.points.clone() };
-        let lines: Vec<CrackLine> = cracks
-            .iter()
-            .zip(&self.cracks)
-            .enumerate()
-            .map(|(i, (crack, now))| crack.line(i, points(crack, now), beyond))
-            .collect();
+        let points = |i: usize, crack: &Crack| {
+            let points = if holds { &self.cracks[i].position } else { &crack.points };
+            points.clone()
+        };
+        let lines = cracks.lines(points, reach * scene.cell_size);
         let tip_division = scene.solver.tip_division;
         Division::new(&lines, tip_division, TipCut::PLAIN, scene.cell_size, scene.particle_spacing, reach)
     }

@@ -82,7 +82,7 @@ fn band_to_grid<const W: usize, const AFFINE: bool>(
         // The grid has been laid for all stencils.
         let Some(rows) = walker.rows(stencil.first, W) else { continue };
         let m = setup.particles.mass[p];
-        let tension = points.stress_times_volume(setup, p);
+        let tension = points.stress_times_volume(setup, p, point);
         let x: [f64; W] = first(&stencil.weight[0]);
         let dx: [f64; W] = first(&stencil.gradient[0]);
         let mut arm_x = [0.0; W];
@@ -164,7 +164,7 @@ impl ToGrid<'_> {
         for (p, entries) in self.lattice.stencils.iter() {
             let point = &self.points.point[p];
             let m = self.setup.particles.mass[p];
-            let tension = self.points.stress_times_volume(self.setup, p);
+            let tension = self.points.stress_times_volume(self.setup, p, point);
             let affine = self.points.affine.get(p);
             for e in entries {
                 let d = e.field as usize;

@@ -93,12 +93,11 @@ impl Points {
         }
     }
 
-    /// V_p0 τ_p [N], which equals V_p σ_p.
+    /// V_p0 τ_p [N], which equals V_p σ_p, of a particle, which is at `point`.
     #[inline]
-    pub(super) fn stress_times_volume(&self, setup: &Setup, particle: usize) -> Matrix {
+    pub(super) fn stress_times_volume(&self, setup: &Setup, particle: usize, point: &MaterialPoint) -> Matrix {
         let (mu, lambda) = self.moduli(setup, particle);
-        let elastic_gradient = &self.point[particle].elastic_gradient;
-        crate::kirchhoff_stress(elastic_gradient, mu, lambda) * setup.particles.volume[particle]
+        crate::kirchhoff_stress(&point.elastic_gradient, mu, lambda) * setup.particles.volume[particle]
     }
 
     /// H = F − I of a particle, elastic and plastic part together.

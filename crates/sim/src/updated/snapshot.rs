@@ -7,9 +7,10 @@ use super::setup::Setup;
 use crate::SimulationError;
 use crate::crack::cracks::Cracks;
 use crate::faces::crack_frame::crack_frame;
+use crate::particles::ParticleNow;
 use crate::saved;
 use crate::solver::{Continuation, Snapshot, SolverEnergies};
-use fissure_scene::{CrackFrame, Matrix, OutlineFrame, ParticleFrame, Scene, Vector};
+use fissure_scene::{CrackFrame, OutlineFrame, ParticleFrame, Scene, Vector};
 
 impl Snapshot for Updated {
     fn particle_frame(&self) -> ParticleFrame {
@@ -63,28 +64,13 @@ impl Snapshot for Updated {
 impl Points {
     /// The particles as a frame holds them (pieces left 0).
     pub(super) fn frame(&self, setup: &Setup) -> ParticleFrame {
-        let particles = &setup.particles;
-        let n = particles.len();
-        let mut frame = ParticleFrame {
-            id: (0..n as u32).collect(),
-            body: particles.body.clone(),
-            piece: vec![0; n],
-            rest: particles.rest.clone(),
-            position: Vec::with_capacity(n),
-            velocity: Vec::with_capacity(n),
-            deformation_gradient: Vec::with_capacity(n),
-            cauchy_stress: Vec::with_capacity(n),
-        };
-        for (p, point) in self.point.iter().enumerate() {
-            let (mu, lambda) = self.moduli(setup, p);
-            let h = self.total_gradient(p);
-            let ratio = 1.0 + crate::volume_change(&h);
-            frame.position.push(point.position);
-            frame.velocity.push(point.velocity);
-            frame.deformation_gradient.push(Matrix::identity() + h);
-            frame.cauchy_stress.push(crate::kirchhoff_stress(&point.elastic_gradient, mu, lambda) / ratio);
-        }
-        frame
+        setup.particles.frame(|p| {
+            let (point, (mu, lambda)) = (&self.point[p], self.moduli(setup, p));
+            let gradient = self.total_gradient(p);
+            let ratio = 1.0 + crate::volume_change(&gradient);
+            let cauchy_stress = crate::kirchhoff_stress(&point.elastic_gradient, mu, lambda) / ratio;
+            ParticleNow { position: point.position, velocity: point.velocity, gradient, cauchy_stress }
+        })
     }
 }
 
