@@ -1,8 +1,9 @@
 //! What benchmarks time by itself. Not for use: no promise holds here.
 
 use crate::boolean::{material, twice_area};
+use crate::slot::Slot;
 use crate::snap::GridPoint;
-use crate::source::{Carried, Slot, SourceEdge};
+use crate::source::{Carried, SourceEdge};
 use fissure_scene::{Point, Vector};
 
 /// Twice the area that `rings` enclose, in squared grid steps: places they wind around at least once count.

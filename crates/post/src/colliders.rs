@@ -5,8 +5,9 @@ use crate::error::PostError;
 use crate::extrude::Extrusion;
 use crate::mesh::{Content, Mesh, object_name};
 use crate::options::PostOptions;
+use crate::slot::Slot;
 use crate::snap::Grid;
-use crate::source::{Carried, Slot, SourceEdge};
+use crate::source::{Carried, SourceEdge};
 use fissure_scene::{Collider, ColliderShape, Frame, Point, Pose, Scene, Vector};
 
 /// Corners of the polygon that stands for a disc; off the circle by 0.03 % of the radius.

@@ -2,8 +2,9 @@
 
 use crate::boolean::{Edge, Shape};
 use crate::mesh::{Mesh, Vertex};
+use crate::slot::Slot;
 use crate::snap::Grid;
-use crate::source::{Carried, Slot, SourceEdge};
+use crate::source::{Carried, SourceEdge};
 use crate::triangulate::triangulate;
 use fissure_scene::{Point, Vector};
 

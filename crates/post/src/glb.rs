@@ -3,7 +3,7 @@
 use crate::mesh::{Content, Mesh};
 use crate::packed::{PackedVertex, compact, pack};
 use crate::provenance::Provenance;
-use crate::source::Slot;
+use crate::slot::Slot;
 use fissure_scene::UpAxis;
 use gltf::binary::{Glb, Header};
 use gltf::json::accessor::{ComponentType, GenericComponentType, Type};

@@ -47,6 +47,7 @@ mod provenance;
 #[cfg(feature = "files")]
 mod record;
 mod seam;
+mod slot;
 mod snap;
 mod source;
 mod triangulate;
@@ -66,7 +67,7 @@ pub use post::{FrameMeshes, post_frame};
 pub use provenance::Provenance;
 #[cfg(feature = "files")]
 pub use record::{FileRecord, file_name};
-pub use source::Slot;
+pub use slot::Slot;
 #[cfg(feature = "files")]
 pub use write::write_frame;
 #[cfg(feature = "files")]

@@ -1,6 +1,6 @@
 //! Meshes as they are written, and the check that a solid is one.
 
-use crate::source::Slot;
+use crate::slot::Slot;
 use std::collections::HashMap;
 
 /// A vertex. The drawing lies in the x–y plane, y up, z towards the viewer.

@@ -1,7 +1,8 @@
 //! The opening polygon of a crack: the hole that its two faces leave.
 
+use crate::slot::Slot;
 use crate::snap::{Grid, GridPoint};
-use crate::source::{Carried, Slot, SourceEdge};
+use crate::source::{Carried, SourceEdge};
 use fissure_scene::{CrackEnd, CrackFrame, Point, Vector};
 
 /// The edges of the opening polygon of `crack`: along the face above from start to end, back along the face below.

@@ -1,7 +1,8 @@
 //! The moved rings of a body as boundary edges.
 
+use crate::slot::Slot;
 use crate::snap::Grid;
-use crate::source::{Carried, Slot, SourceEdge};
+use crate::source::{Carried, SourceEdge};
 use fissure_scene::OutlineFrame;
 
 /// The edges of one ring, in ring order.

@@ -9,8 +9,9 @@
 //! and that is the next pinch point.)
 
 use crate::boolean::{Contour, Edge, Operation, Shape, SourceIndex, combine};
+use crate::slot::Slot;
 use crate::snap::GridPoint;
-use crate::source::{Slot, SourceEdge};
+use crate::source::SourceEdge;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 

@@ -3,7 +3,7 @@
 use crate::mesh::{Content, Mesh};
 use crate::packed::{PackedVertex, compact, pack};
 use crate::provenance::Provenance;
-use crate::source::Slot;
+use crate::slot::Slot;
 use fissure_scene::UpAxis;
 use ply_rs_bw::ply::{
     Addable, ElementDef, Encoding, Ply, PropertyAccess, PropertyDef, PropertyType::List, PropertyType::Scalar,
