@@ -1,6 +1,6 @@
 //! Regions: a ring with holes.
 
-use crate::{Point, bounds, nearest_on_segment, orientation, signed_area};
+use crate::{Point, bounds, is_left_of, nearest_on_segment, signed_area};
 use serde::{Deserialize, Serialize};
 
 /// A plane region: one outer ring and any number of holes.
@@ -25,21 +25,14 @@ impl Region {
         self.rings().map(signed_area).sum()
     }
 
-    /// Whether `point` lies inside: an odd number of ring crossings to the right, decided by exact predicates.
+    /// Whether `point` lies inside: to the left of an odd number of edges, decided exactly ([`is_left_of`]).
     ///
-    /// A point exactly on an edge belongs to the region on one side only (half-open rule), so abutting regions share no
-    /// point.
+    /// A point exactly on an edge belongs to the region on one side only, so abutting regions share no point.
     pub fn contains(&self, point: Point) -> bool {
         let mut inside = false;
         for ring in self.rings() {
             for i in 0..ring.len() {
-                let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
-                if (a.y > point.y) != (b.y > point.y) {
-                    let turn = orientation(a, b, point);
-                    if (b.y > a.y && turn > 0.0) || (b.y < a.y && turn < 0.0) {
-                        inside = !inside;
-                    }
-                }
+                inside ^= is_left_of(ring[i], ring[(i + 1) % ring.len()], point);
             }
         }
         inside

@@ -67,12 +67,13 @@ fn piece_of(shape: &Shape, grid: Grid, particles: &[(Point, u32)]) -> u32 {
     if let Some((piece, _)) = winner {
         return piece;
     }
-    let center = centroid(&shape[0], grid);
+    let center = mean_corner(&shape[0], grid);
     let distance = |position: &Point| (position - center).norm_squared();
     particles.iter().min_by(|(p, _), (q, _)| distance(p).total_cmp(&distance(q))).map_or(0, |&(_, piece)| piece)
 }
 
-fn centroid(contour: &Contour, grid: Grid) -> Point {
+/// The mean of the corners of a contour.
+fn mean_corner(contour: &Contour, grid: Grid) -> Point {
     let sum = contour.iter().fold(Point::origin().coords, |sum, e| sum + grid.place(e.a).coords);
     Point::from(sum / contour.len() as f64)
 }
@@ -109,10 +110,8 @@ impl Rows {
     fn contains(&self, point: Point) -> bool {
         let in_box = point.x >= self.low.x && point.x <= self.high.x && point.y >= self.low.y && point.y <= self.high.y;
         in_box
-            && self.rows[self.row(point.y)].iter().fold(false, |inside, &(a, b)| {
-                let crosses =
-                    (a.y > point.y) != (b.y > point.y) && point.x < a.x + (b.x - a.x) * ((point.y - a.y) / (b.y - a.y));
-                inside != crosses
-            })
+            && self.rows[self.row(point.y)]
+                .iter()
+                .fold(false, |inside, &(a, b)| inside != fissure_plane::is_left_of(a, b, point))
     }
 }
