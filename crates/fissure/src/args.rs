@@ -271,14 +271,25 @@ where
     PossibleValuesParser::new(words).try_map(meant)
 }
 
-fn parse_length(word: &str) -> Result<f64, String> {
-    let value: f64 = word.parse().map_err(|_| "not a number".to_owned())?;
-    if value.is_finite() && value > 0.0 { Ok(value) } else { Err("it must be above 0 and finite [m]".to_owned()) }
+/// Why a number of the command line is refused.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+enum NumberError {
+    #[error("not a number")]
+    Unreadable,
+    #[error("it must be above 0 and finite [m]")]
+    NotPositive,
+    #[error("the cells must be 4 to 1024")]
+    CellsOutOfRange,
 }
 
-fn parse_cells(word: &str) -> Result<f64, String> {
-    let value: f64 = word.parse().map_err(|_| "not a number".to_owned())?;
-    if (4.0..=1024.0).contains(&value) { Ok(value) } else { Err("the cells must be 4 to 1024".to_owned()) }
+fn parse_length(word: &str) -> Result<f64, NumberError> {
+    let value: f64 = word.parse().map_err(|_| NumberError::Unreadable)?;
+    if value.is_finite() && value > 0.0 { Ok(value) } else { Err(NumberError::NotPositive) }
+}
+
+fn parse_cells(word: &str) -> Result<f64, NumberError> {
+    let value: f64 = word.parse().map_err(|_| NumberError::Unreadable)?;
+    if (4.0..=1024.0).contains(&value) { Ok(value) } else { Err(NumberError::CellsOutOfRange) }
 }
 
 #[cfg(test)]

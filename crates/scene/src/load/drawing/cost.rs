@@ -64,7 +64,7 @@ impl<'a, 'd> Walk<'a, 'd> {
         self.costs.insert(key, None);
         let mut cost = Cost { elements: 1, ..Cost::default() };
         for (name, value) in self.styles.declared(node).filter(|(name, _)| !NO_NUMBERS.contains(name)) {
-            cost.numbers += count_numbers(value, name == "d").map_err(|number| {
+            cost.numbers += count_numbers(value, name == "d").map_err(|OutOfRange(number)| {
                 let message = format!(
                     "`{name}` has the number {number}: numbers must lie between -{LARGEST_NUMBER:e} and {LARGEST_NUMBER:e}"
                 );
@@ -130,12 +130,15 @@ fn check_page(root: &Node<'_, '_>) -> Result<(), Excess> {
     Ok(())
 }
 
+/// The first number of a value that is out of range, as it is written, cut off where it is long.
+struct OutOfRange(String);
+
 /// How many numbers there are in a value, or the first that is out of range.
-fn count_numbers(value: &str, is_path: bool) -> Result<u64, String> {
+fn count_numbers(value: &str, is_path: bool) -> Result<u64, OutOfRange> {
     let mut count = 0;
     for number in numbers(value, is_path) {
         if number.parse::<f64>().is_ok_and(|n| n.abs() > LARGEST_NUMBER) {
-            return Err(number.chars().take(40).collect());
+            return Err(OutOfRange(number.chars().take(40).collect()));
         }
         count += 1;
     }

@@ -33,11 +33,22 @@ impl View {
     }
 }
 
+/// Why a drawing cannot be resolved.
+#[derive(Debug, thiserror::Error)]
+enum Unresolved {
+    /// Its text is not what SVG takes.
+    #[error("not valid SVG: {0}")]
+    NotSvg(usvg::Error),
+    /// The library gave up.
+    #[error("not valid SVG: its numbers or references make no sense together")]
+    Senseless,
+}
+
 /// A drawing as text, and the trees it is resolved to.
 pub(super) struct Views {
     text: String,
     fonts: Fonts,
-    trees: [OnceCell<Result<usvg::Tree, String>>; 3],
+    trees: [OnceCell<Result<usvg::Tree, Unresolved>>; 3],
 }
 
 impl Views {
@@ -48,13 +59,13 @@ impl Views {
     /// The drawing, seen in one way; resolved when it is first asked for.
     pub(super) fn tree(&self, view: View) -> Result<&usvg::Tree, Complaint> {
         let tree = self.trees[view as usize].get_or_init(|| resolve(&self.text, &self.fonts, view));
-        tree.as_ref().map_err(|e| (e.clone(), "open the drawing in an SVG editor and save it again".into()))
+        tree.as_ref().map_err(|e| (e.to_string(), "open the drawing in an SVG editor and save it again".into()))
     }
 }
 
 /// Resolves styles, references, shapes and text. Nothing outside of the text and the fonts is opened: pictures are left
 /// out.
-fn resolve(text: &str, fonts: &Fonts, view: View) -> Result<usvg::Tree, String> {
+fn resolve(text: &str, fonts: &Fonts, view: View) -> Result<usvg::Tree, Unresolved> {
     let mut options = usvg::Options {
         style_sheet: Some(view.style_sheet()),
         fontdb: fonts.database.clone(),
@@ -69,7 +80,7 @@ fn resolve(text: &str, fonts: &Fonts, view: View) -> Result<usvg::Tree, String> 
     }
     // The known panics of usvg are guarded against before; an unknown one must not take the program along.
     match catch_unwind(AssertUnwindSafe(|| usvg::Tree::from_str(text, &options))) {
-        Ok(tree) => tree.map_err(|e| format!("not valid SVG: {e}")),
-        Err(_) => Err("not valid SVG: its numbers or references make no sense together".into()),
+        Ok(tree) => tree.map_err(Unresolved::NotSvg),
+        Err(_) => Err(Unresolved::Senseless),
     }
 }
