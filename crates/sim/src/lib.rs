@@ -9,7 +9,7 @@
 //! use std::ops::ControlFlow;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! // A plate of 20 m × 20 m with a crack from its upper edge, pulled to both sides. Coarse, so that it runs in a moment.
+//! // A plate of 20 m × 20 m with a crack from its upper edge, pulled to both sides. Coarse, so that it is quick.
 //! # let file = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/pull/scene.toml"));
 //! let scene = fissure_scene::load(file, &["grid.particle_spacing=0.25".into(), "frames.range=\"1-24\"".into()])?;
 //!

@@ -137,7 +137,8 @@ impl Cracks {
         length
     }
 
-    /// Sets the end on its way to `target` with a new point, at the part `part` of the way, for which lines will be cut.
+    /// Sets the end on its way to `target` with a new point, at the part `part` of the way, for which lines will be
+    /// cut.
     pub(crate) fn begin_increment(&mut self, id: TipId, target: Point, part: f64) {
         let from = self.position(id);
         self.grow(id, &[from + (target - from) * part]);
@@ -154,8 +155,8 @@ impl Cracks {
         self.of(id).left_of_increment(id.end)
     }
 
-    /// Moves the end on by `distance` [m] along its increment, whose end it reaches when no more is left; lines stay cut
-    /// as they are.
+    /// Moves the end on by `distance` [m] along its increment, whose end it reaches when no more is left; lines stay
+    /// cut as they are.
     pub(crate) fn slide(&mut self, id: TipId, distance: f64) {
         let crack = &mut self.0[id.crack];
         crack.slide(id.end, distance);

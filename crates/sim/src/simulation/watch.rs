@@ -4,8 +4,8 @@ use super::Simulation;
 use crate::{SimulationError, foresight};
 
 /// Energy a run may have beyond what it was given, as a part of what was exchanged. Where forces are those of a grid
-/// that is laid anew in every step, kinetic and strain energy belong to moments half a step apart, and their sum ripples
-/// by some per cent where short waves run; a run that fails gains without bound.
+/// that is laid anew in every step, kinetic and strain energy belong to moments half a step apart, and their sum
+/// ripples by some per cent where short waves run; a run that fails gains without bound.
 const ENERGY_TOLERANCE: f64 = 0.1;
 
 impl Simulation {
@@ -66,7 +66,8 @@ mod tests {
     use fissure_scene::{Formulation, Kernel, Selection};
     use std::ops::ControlFlow;
 
-    /// Truth: a plate on which nothing acts keeps its energy, whatever waves run in it and wherever in them frames fall.
+    /// Truth: a plate on which nothing acts keeps its energy, whatever waves run in it and wherever in them frames
+    /// fall.
     #[test]
     fn a_free_plate_that_rings_keeps_its_energy() {
         let mut scene = free_body(rectangle([0.0, 0.0], [1.0, 1.0]), 0.0625);
