@@ -7,12 +7,12 @@
 //! It reads no file and knows no scene. The solver asks it for every pair of a particle and a node near a crack, so it
 //! is compiled for speed and its small functions may be inlined into the caller.
 //!
-//! The crate `geo` is the truth of the tests, on coordinates that meet often, and not part of the build. It would do for areas,
-//! distances and the crossings of segments, but all that is asked here is asked of rings that are lists of points, by edge:
-//! the place nearest to a point with its ring, its edge and the bits of a corner; the place where lines cross or run back; a
-//! point on an edge told to one side only. `geo` wants closed copies of each ring, says that a polygon is not valid and not
-//! where, and tells points on an edge to no side. It would also bring a second `i_overlay` and 15 s of compiling to every
-//! build of the solver.
+//! The crate `geo` is the truth of the tests, on coordinates that meet often, and not part of the build. It would do
+//! for areas, distances and the crossings of segments, but all that is asked here is asked of rings that are lists of
+//! points, by edge: the place nearest to a point with its ring, its edge and the bits of a corner; the place where
+//! lines cross or run back; a point on an edge told to one side only. `geo` wants closed copies of each ring, says that
+//! a polygon is not valid and not where, and tells points on an edge to no side. It would also bring a second
+//! `i_overlay` and 15 s of compiling to every build of the solver.
 //!
 //! ```
 //! use fissure_plane::{Point, Region, find_crossing, segments_touch};

@@ -13,8 +13,9 @@ pub fn orientation(a: Point, b: Point, c: Point) -> f64 {
 
 /// Whether the ray from `point` in the direction of x crosses the edge `a`–`b`, decided exactly.
 ///
-/// The lower end of an edge belongs to it, the upper end does not, and a point on an edge that rises along the ring is not to
-/// the left of it: a ray through a corner crosses one of two edges that go on, and both or none of two that turn back.
+/// The lower end of an edge belongs to it, the upper end does not, and a point on an edge that rises along the ring is
+/// not to the left of it: a ray through a corner crosses one of two edges that go on, and both or none of two that turn
+/// back.
 #[inline]
 pub fn is_left_of(a: Point, b: Point, point: Point) -> bool {
     if (a.y > point.y) == (b.y > point.y) {

@@ -1,5 +1,5 @@
-//! Our own predicates, distances, areas and crossings against those of the crate `geo`, on coordinates that meet often: a
-//! coarse lattice, turned and scaled so that most of them are rounded.
+//! Our own predicates, distances, areas and crossings against those of the crate `geo`, on coordinates that meet often:
+//! a coarse lattice, turned and scaled so that most of them are rounded.
 
 use fissure_plane::{
     Point, Region, clean_ring, distance_to_segment, find_crossing, nearest_on_segment, oriented, segment_distance,
