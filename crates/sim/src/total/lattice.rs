@@ -2,8 +2,7 @@
 //! grows.
 
 use super::cut::CutParticles;
-use super::reader::Reader;
-use super::rows::Run;
+use super::run::Run;
 use crate::SimulationError;
 use crate::crack::cracks::Cracks;
 use crate::crack::division::{Division, TipCut};
@@ -136,11 +135,6 @@ impl Lattice {
     /// The weights of a place at the nodes around it.
     pub(super) fn stencil(&self, place: Point) -> kernel::Stencil {
         stencil(self.kernel, self.particles.spacing, &self.grid, place)
-    }
-
-    /// A reader of fields at particles.
-    pub(super) fn reader(&self) -> Reader<'_> {
-        Reader::new(self)
     }
 
     /// The fields at nodes.

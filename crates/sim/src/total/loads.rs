@@ -1,7 +1,8 @@
 //! Loads: forces at places of the material.
 
+use super::field_vectors::FieldVectors;
 use super::lattice::Lattice;
-use super::motion::{FieldVectors, Motion};
+use super::motion::Motion;
 use super::near::Near;
 use super::probe::Probe;
 use crate::SimulationError;

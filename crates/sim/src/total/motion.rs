@@ -1,13 +1,11 @@
 //! How the fields move: displacements at whole steps, velocities half a step ahead.
 
+use super::field_vectors::{FieldVectors, at};
 use super::lattice::Lattice;
 use crate::saved::{self, Fits};
 use fissure_plane::Vector;
 use fissure_scene::Scene;
 use serde::{Deserialize, Serialize};
-
-/// A vector at every field, x and y apart.
-pub(super) type FieldVectors = [Vec<f64>; 2];
 
 /// The motion of all fields.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -166,10 +164,4 @@ impl Motion {
         let v = &self.velocity;
         mass.iter().enumerate().map(|(d, m)| m * (gravity.x * v[0][d] + gravity.y * v[1][d])).sum()
     }
-}
-
-/// The vector at a field.
-#[inline]
-pub(super) fn at(u: &FieldVectors, field: usize) -> Vector {
-    Vector::new(u[0][field], u[1][field])
 }

@@ -1,7 +1,7 @@
 //! A place that rides on the material.
 
+use super::field_vectors::{FieldVectors, at};
 use super::lattice::Lattice;
-use super::motion::{FieldVectors, at};
 use crate::faces::outlines::Vertex;
 use crate::saved::{self, Fits};
 use fissure_plane::{Point, Vector};

@@ -1,7 +1,8 @@
 //! Whether the material is finite and within what the formulation can follow.
 
+use super::field_vectors::FieldVectors;
 use super::lattice::Lattice;
-use super::motion::{FieldVectors, Motion};
+use super::motion::Motion;
 use crate::SimulationError;
 use crate::material::constitutive::principal_stretches;
 

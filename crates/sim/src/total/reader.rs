@@ -1,7 +1,8 @@
 //! What fields make of particles: values, gradients and strains, particle by particle.
 
+use super::field_vectors::{FieldVectors, at};
 use super::lattice::Lattice;
-use super::motion::{FieldVectors, Motion, at};
+use super::motion::Motion;
 use crate::grid::walker::Walker;
 use fissure_plane::{Matrix, Vector};
 
@@ -33,6 +34,13 @@ pub(super) struct ParticleRates {
     pub(super) velocity_gradient: Matrix,
     /// Acceleration [m/s²].
     pub(super) acceleration: Vector,
+}
+
+impl Lattice {
+    /// A reader of fields at particles.
+    pub(super) fn reader(&self) -> Reader<'_> {
+        Reader::new(self)
+    }
 }
 
 impl<'a> Reader<'a> {

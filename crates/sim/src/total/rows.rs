@@ -4,43 +4,14 @@
 //! such cells is one loop over contiguous arrays, and an elastic particle in it needs no state at all: H = Σ u_i ⊗
 //! ∇w_ip.
 
+use super::field_vectors::FieldVectors;
 use super::lattice::Lattice;
-use super::motion::FieldVectors;
+use super::run::Run;
 use crate::grid::Grid;
 use std::ops::Range;
 
 /// Cells treated at once.
 const BLOCK: usize = 32;
-
-/// A run of uncut cells of one material in one row of cells. Its nodes, one more than cells, are side by side in the
-/// row below and in the row above.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub(super) struct Run {
-    /// Lower left node of its first cell.
-    pub(super) lower: u32,
-    /// Upper left node of its first cell.
-    pub(super) upper: u32,
-    /// Number of cells.
-    pub(super) count: u32,
-    /// Material.
-    pub(super) material: u32,
-}
-
-impl Run {
-    /// Whether its nodes are among those of two rows.
-    pub(super) fn lies_in(&self, lower: &Range<usize>, upper: &Range<usize>) -> bool {
-        let within = |first: u32, nodes: &Range<usize>| {
-            let end = first as usize + self.count as usize + 1;
-            nodes.start <= first as usize && end <= nodes.end
-        };
-        within(self.lower, lower) && within(self.upper, upper)
-    }
-
-    /// Whether its cells have the lower left node `node` among them.
-    pub(super) fn holds(&self, node: usize) -> bool {
-        (self.lower as usize..(self.lower + self.count) as usize).contains(&node)
-    }
-}
 
 /// Elastic constants of a run, with lengths folded in.
 #[derive(Debug, Clone, Copy)]

@@ -1,8 +1,9 @@
 //! What is read of the solver: particles, outlines and cracks as frames hold them, energies and momenta.
 
+use super::field_vectors::FieldVectors;
 use super::internal_forces;
 use super::lattice::Lattice;
-use super::motion::{FieldVectors, Motion};
+use super::motion::Motion;
 use super::probe::Probe;
 use super::probes::{Faces, Probes};
 use super::ties::Ties;

@@ -1,8 +1,9 @@
 //! How fast the discrete material can move: the largest stable step, and the frequency of the present motion.
 
+use super::field_vectors::FieldVectors;
 use super::internal_forces;
 use super::lattice::Lattice;
-use super::motion::{FieldVectors, Motion};
+use super::motion::Motion;
 use super::ties::Ties;
 
 /// Rounds of the Lanczos iteration. On a plate of 20 × 40 cells with an edge crack 40 rounds give 3.4910e8 1/s², 300

@@ -21,8 +21,9 @@
 //! acts on the difference of the two fields alone, so momentum, gravity and rigid motion do not see it, and by
 //! Rayleigh's quotient (K + k)/(M + m) ≤ max(K/M, k/m) no mode is faster than one of the lattice without ties.
 
+use super::field_vectors::{FieldVectors, at};
 use super::lattice::Lattice;
-use super::motion::{FieldVectors, Motion, at};
+use super::motion::Motion;
 use crate::saved::{self, Fits};
 use fissure_plane::{Point, Vector};
 use serde::{Deserialize, Serialize};

@@ -1,7 +1,8 @@
 //! The ties of all tips: where they are laid, how they are coupled, softened, and what they release.
 
+use super::field_vectors::FieldVectors;
 use super::lattice::Lattice;
-use super::motion::{FieldVectors, Motion};
+use super::motion::Motion;
 use super::near::Near;
 use super::tie::{self, Measures, Tie};
 use crate::crack::cracks::{Cracks, TipId};
