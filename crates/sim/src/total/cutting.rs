@@ -1,4 +1,5 @@
-//! Cutting the lattice: which cells are whole and go as rows, which particles get stencils of their own, and what those are.
+//! Cutting the lattice: which cells are whole and go as rows, which particles get stencils of their own, and what those
+//! are.
 
 use super::lattice::Lattice;
 use super::run::Run;

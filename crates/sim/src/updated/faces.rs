@@ -3,11 +3,10 @@
 use super::material_velocity::MaterialVelocity;
 use super::points::Points;
 use super::setup::Setup;
-use super::tracers::Tracer;
+use super::tracer::{SIDES, Tracer};
 use crate::SimulationError;
 use crate::crack::Crack;
 use crate::crack::cracks::{Cracks, TipId};
-use crate::crack::crossing::Side;
 use crate::crack::division::{Division, TipCut};
 use crate::faces::outlines::Outlines;
 use crate::grid::kernel;
@@ -37,9 +36,6 @@ pub(super) struct Faces {
     /// Doubled at mouths.
     pub(super) outlines: Outlines<Tracer>,
 }
-
-/// The faces, in the order of [`CrackNow::faces`].
-pub(super) const SIDES: [Side; 2] = [Side::Above, Side::Below];
 
 /// How far beside a crack the side of a face point is decided, in cells.
 const NUDGE: f64 = 1e-6;

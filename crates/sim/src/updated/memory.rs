@@ -5,7 +5,7 @@ use super::cut::Raw;
 use super::plastic::PlasticPart;
 use super::points::{MaterialPoint, Motion};
 use super::setup::{has_affine, is_plastic};
-use super::tracers::Tracer;
+use super::tracer::Tracer;
 use crate::grid::entries::Entry;
 use crate::grid::kernel;
 use crate::memory::amounts::{Amounts, Need};

@@ -41,6 +41,7 @@ mod stability;
 mod supports;
 #[cfg(test)]
 mod tests;
+mod tracer;
 mod tracers;
 
 use crate::SimulationError;

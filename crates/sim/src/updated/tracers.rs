@@ -1,53 +1,12 @@
-//! The rings of the bodies: vertices that move with the material (thesis 3.1.7), and with the faces of cracks where
+//! The rings of the bodies: how their vertices move with the material (thesis 3.1.7), and with the faces of cracks where
 //! these mouth.
 
-use super::faces::{Faces, SIDES};
+use super::faces::Faces;
 use super::material_velocity::MaterialVelocity;
+use super::tracer::Tracer;
 use crate::crack::cracks::{Cracks, TipId};
-use crate::faces::outlines::Vertex;
-use crate::saved::{self, Fits};
 use crate::threads::prelude::*;
-use fissure_scene::{OutlineFrame, Point, Vector};
-use serde::{Deserialize, Serialize};
-
-/// A vertex of an outline.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(super) struct Tracer {
-    rest: Point,
-    /// [m].
-    pub(super) position: Point,
-    /// [m/s].
-    pub(super) velocity: Vector,
-    /// The end of a crack face that this vertex is, 0 above or 1 below.
-    pub(super) face: Option<(TipId, usize)>,
-}
-
-impl Vertex for Tracer {
-    fn rest(&self) -> Point {
-        self.rest
-    }
-
-    fn is_at_mouth(&self) -> bool {
-        self.face.is_some()
-    }
-}
-
-impl Tracer {
-    pub(super) fn at_rest(rest: Point) -> Self {
-        Self { rest, position: rest, velocity: Vector::zeros(), face: None }
-    }
-
-    /// Checks a tracer that was read: that its numbers are finite and that it names one of so many `cracks`.
-    ///
-    /// # Errors
-    /// [`SimulationError::BadState`](crate::SimulationError::BadState)
-    pub(super) fn check(&self, cracks: usize) -> Fits {
-        saved::finite("an outline", self.rest.iter().chain(self.position.iter()).chain(&self.velocity))?;
-        let Some((id, side)) = self.face else { return Ok(()) };
-        id.check(cracks)?;
-        saved::ensure(side < SIDES.len(), "an outline")
-    }
-}
+use fissure_scene::{OutlineFrame, Vector};
 
 impl Faces {
     /// Doubles the outline where a crack mouths at it: the two new vertices are the end points of the faces.
