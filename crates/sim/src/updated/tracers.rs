@@ -1,5 +1,5 @@
-//! The rings of the bodies: how their vertices move with the material (thesis 3.1.7), and with the faces of cracks where
-//! these mouth.
+//! The rings of the bodies: how their vertices move with the material (thesis 3.1.7), and with the faces of cracks
+//! where these mouth.
 
 use super::faces::Faces;
 use super::material_velocity::MaterialVelocity;
