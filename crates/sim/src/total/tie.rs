@@ -107,14 +107,14 @@ pub(super) fn is_tied(ahead: f64, split_ahead: f64) -> bool {
 
 /// What all ties of one body of material have in common.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Measures {
+pub(super) struct TieUnits {
     /// Distance between nodes [m].
     pub(super) cell_size: f64,
     /// Time a wave takes for a cell [s].
     crossing: f64,
 }
 
-impl Measures {
+impl TieUnits {
     /// Those of `lattice`.
     pub(super) fn of(lattice: &Lattice) -> Self {
         Self { cell_size: lattice.grid.cell_size, crossing: lattice.crossing_time() }
@@ -129,7 +129,7 @@ impl Tie {
         (node, place): (u32, Point),
         stiffness: [f64; 2],
         ahead: f64,
-        measures: Measures,
+        units: TieUnits,
     ) -> Self {
         let [s1, s2] = stiffness;
         let mut tie = Self {
@@ -144,7 +144,7 @@ impl Tie {
             drag: 0.0,
             dragged: 0.0,
         };
-        tie.soften(ahead, measures);
+        tie.soften(ahead, units);
         tie
     }
 
@@ -170,12 +170,12 @@ impl Tie {
     }
 
     /// Softens the tie to where it is when the tip is `ahead` cells from its node.
-    pub(super) fn soften(&mut self, ahead: f64, measures: Measures) {
+    pub(super) fn soften(&mut self, ahead: f64, units: TieUnits) {
         let released = released_part(ahead);
         self.stiffness = self.scale * softness(released);
-        self.inertia = self.stiffness * (INERTIA * measures.crossing).powi(2);
+        self.inertia = self.stiffness * (INERTIA * units.crossing).powi(2);
         let stiff = (1.0 - released).powi(3);
-        self.drag = DRAG * stiff / (stiff + released) * self.scale * measures.crossing;
+        self.drag = DRAG * stiff / (stiff + released) * self.scale * units.crossing;
     }
 
     pub(super) fn opening(&self, u: &FieldVectors) -> Vector {

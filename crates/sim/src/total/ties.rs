@@ -4,7 +4,7 @@ use super::field_vectors::FieldVectors;
 use super::lattice::Lattice;
 use super::motion::Motion;
 use super::near::Near;
-use super::tie::{self, Measures, Tie};
+use super::tie::{self, Tie, TieUnits};
 use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::division::WINDOW;
 use crate::saved::{self, Fits};
@@ -144,12 +144,12 @@ impl Ties {
 
     /// Softens the ties of a tip to where it is now.
     pub(super) fn soften(&mut self, lattice: &Lattice, cracks: &Cracks, id: TipId) {
-        let measures = Measures::of(lattice);
+        let units = TieUnits::of(lattice);
         let (tip, direction) = (cracks.position(id), cracks.last_direction(id));
         let Some(ties) = self.of_tip.get_mut(&id) else { return };
         let mut nodes: Vec<u32> = Vec::with_capacity(ties.len());
         for tie in ties {
-            tie.soften(tie.ahead_of(tip, direction, measures.cell_size), measures);
+            tie.soften(tie.ahead_of(tip, direction, units.cell_size), units);
             nodes.push(tie.node);
         }
         nodes.dedup();
@@ -235,7 +235,7 @@ impl Ties {
 /// The ties that a tip should have where it is now.
 fn ties_at(lattice: &Lattice, cracks: &Cracks, id: TipId) -> Vec<Tie> {
     let h = lattice.grid.cell_size;
-    let measures = Measures::of(lattice);
+    let units = TieUnits::of(lattice);
     let (tip, direction) = (cracks.position(id), cracks.last_direction(id));
     let [middle_column, middle_row] = lattice.grid.cell(tip);
     let reach = WINDOW.ceil() as i32 + 1;
@@ -256,7 +256,7 @@ fn ties_at(lattice: &Lattice, cracks: &Cracks, id: TipId) -> Vec<Tie> {
             let facing = lattice.fields().facing_pairs(&fields).filter(|pair| pair.crack as usize == id.crack);
             ties.extend(facing.map(|pair| {
                 let stiffness = [pair.first, pair.second].map(stiffness_of);
-                Tie::new([pair.first, pair.second], (node as u32, place), stiffness, ahead, measures)
+                Tie::new([pair.first, pair.second], (node as u32, place), stiffness, ahead, units)
             }));
         }
     }
