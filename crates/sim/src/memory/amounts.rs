@@ -1,8 +1,6 @@
 //! What a scene is made of, counted before any of it is laid, and what a formulation makes of it.
 
-use crate::foresight::Course;
 use crate::grid::kernel;
-use crate::material::elastic::Elastic;
 use fissure_plane::{Point, polyline_length};
 use fissure_scene::Scene;
 
@@ -39,8 +37,9 @@ pub(crate) struct Need {
 const ROWS_BESIDE_OUTLINE: f64 = 5.0;
 
 impl Amounts {
-    /// Counts what `scene` is made of, in a time that goes with its outlines.
-    pub(crate) fn of(scene: &Scene) -> Self {
+    /// Counts what `scene` is made of, in a time that goes with its outlines. `growth`: length by which its cracks are
+    /// expected to grow [m].
+    pub(crate) fn of(scene: &Scene, growth: f64) -> Self {
         let (s, h) = (scene.particle_spacing, scene.cell_size);
         let area: f64 = scene.bodies.iter().map(|b| b.region.area()).sum();
         let ring_length = |ring: &[Point]| polyline_length(ring) + (ring[ring.len() - 1] - ring[0]).norm();
@@ -50,8 +49,6 @@ impl Amounts {
         let segments = scene.cracks.iter().flat_map(|c| c.points.windows(2));
         let crack_cells: f64 = segments.map(|w| cells_around(w[0], w[1], h, reach)).sum();
         let particles = area / (s * s);
-        let elastic: Vec<Elastic> = scene.materials.iter().map(|m| Elastic::new(m, scene.plane)).collect();
-        let grown_cells = Course::of(scene, &elastic).growth / h;
         let crack_particles = (crack_cells * (h / s).powi(2)).min(particles);
         Self {
             particles,
@@ -60,7 +57,7 @@ impl Amounts {
             cut_particles: (outline / s + crack_particles).min(particles),
             crack_particles,
             crack_cells,
-            grown_cells,
+            grown_cells: growth / h,
         }
     }
 }

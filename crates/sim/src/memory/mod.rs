@@ -3,7 +3,9 @@
 pub(crate) mod amounts;
 
 use crate::SimulationError;
+use crate::foresight::Course;
 use crate::free_memory::available;
+use crate::material::elastic::Elastic;
 use crate::total;
 use crate::updated::Updated;
 use amounts::{Amounts, Need};
@@ -48,9 +50,10 @@ const FRAME_PARTICLE: usize =
 /// Bytes of a vertex of an outline in a frame.
 const FRAME_OUTLINE_POINT: usize = 2 * size_of::<Point>() + size_of::<Vector>();
 
-/// Memory that a run of `scene` takes, meshes included, when it begins in `formulation` [bytes].
-pub(crate) fn needed(scene: &Scene, formulation: Formulation) -> f64 {
-    let amounts = Amounts::of(scene);
+/// Memory that a run of `scene` takes, meshes included, when it begins in `formulation` and its cracks grow by `growth`
+/// [m] [bytes].
+pub(crate) fn needed(scene: &Scene, formulation: Formulation, growth: f64) -> f64 {
+    let amounts = Amounts::of(scene, growth);
     let need = match formulation {
         Formulation::Updated => Updated::memory(scene, &amounts),
         _ if scene.solver.on_distortion == OnDistortion::Switch => {
@@ -81,27 +84,30 @@ pub(crate) fn check(scene: &Scene, formulation: Formulation) -> Result<(), Simul
 }
 
 fn check_against(scene: &Scene, formulation: Formulation, available: f64) -> Result<(), SimulationError> {
-    let needed = needed(scene, formulation);
+    // Once, not for every spacing that is tried: it asks each crack about all others.
+    let elastic: Vec<Elastic> = scene.materials.iter().map(|m| Elastic::new(m, scene.plane)).collect();
+    let growth = Course::of(scene, &elastic).growth;
+    let needed = needed(scene, formulation, growth);
     if needed <= available {
         return Ok(());
     }
     Err(SimulationError::TooManyParticles {
-        particles: Amounts::of(scene).particles.round() as u64,
+        particles: Amounts::of(scene, growth).particles.round() as u64,
         needed: (needed / MEBIBYTE).ceil() as u64,
         available: (available / MEBIBYTE) as u64,
-        fitting: fitting_spacing(scene, formulation, available),
+        fitting: fitting_spacing(scene, formulation, growth, available),
     })
 }
 
 /// A spacing of particles with which a run fits, two digits; none where it hardly depends on that.
-fn fitting_spacing(scene: &Scene, formulation: Formulation, available: f64) -> Option<f64> {
+fn fitting_spacing(scene: &Scene, formulation: Formulation, growth: f64, available: f64) -> Option<f64> {
     let mut coarser = scene.clone();
     let cells = scene.cell_size / scene.particle_spacing;
     (0..200).map(|k| scene.particle_spacing * 1.1_f64.powi(k + 1)).find_map(|spacing| {
         let digit = 10.0_f64.powf(spacing.log10().floor() - 1.0);
         let spacing = (spacing / digit).ceil() * digit;
         (coarser.particle_spacing, coarser.cell_size) = (spacing, cells * spacing);
-        (needed(&coarser, formulation) <= available).then_some(spacing)
+        (needed(&coarser, formulation, growth) <= available).then_some(spacing)
     })
 }
 
@@ -117,7 +123,7 @@ mod tests {
     fn amounts_are_those_of_the_laid_scene() {
         let mut scene = free_body(rectangle([0.0, 0.0], [4.0, 9.0]), 0.05);
         add_body(&mut scene, [1e5, 3e4]);
-        let amounts = Amounts::of(&scene);
+        let amounts = Amounts::of(&scene, 0.0);
         let laid = Simulation::new(&scene).unwrap();
         assert!((amounts.particles / laid.particles() as f64 - 1.0).abs() < 0.01, "{amounts:?}");
         assert_eq!(amounts.outline_points, 2.0 * 26.0 / 0.05);

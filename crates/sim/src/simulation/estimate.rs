@@ -80,7 +80,7 @@ impl Simulation {
             stable_time_step: simulation.stable_time_step,
             steps: (steps_per_frame * frames) as u64,
             formulation: format!("{name}: {}", choice.reason),
-            memory: memory::needed(&simulation.scene, simulation.formulation) as u64,
+            memory: memory::needed(&simulation.scene, simulation.formulation, course.growth) as u64,
             growth: course.growth,
             seconds: simulation.expected_seconds(steps_per_frame * frames, frames + 1.0, course),
         })
