@@ -64,9 +64,9 @@ pub(crate) trait Snapshot {
     /// Energies now.
     fn energies(&self) -> SolverEnergies;
 
-    /// Kinetic and strain energy of one moment [J/m]. [`Snapshot::energies`] gives the kinetic energy of the velocities
-    /// that there are, which may be those of half a step before.
-    fn energy_of_moment(&self) -> f64;
+    /// What the sum of kinetic and strain energy lacks because its velocities are those of half a step before [J/m].
+    /// Costs an evaluation of all forces.
+    fn energy_of_lag(&self) -> f64;
 
     /// Kinetic energy [J/m]; cheap, unlike the other energies.
     fn kinetic_energy(&self) -> f64;

@@ -304,8 +304,8 @@ impl Snapshot for Total {
         }
     }
 
-    fn energy_of_moment(&self) -> f64 {
-        snapshot::energy_of_moment(&self.lattice, &self.ties, &self.motion)
+    fn energy_of_lag(&self) -> f64 {
+        snapshot::energy_of_lag(&self.lattice, &self.ties, &self.motion)
     }
 
     fn kinetic_energy(&self) -> f64 {

@@ -74,16 +74,16 @@ pub(super) fn strain_energy(lattice: &Lattice, ties: &Ties, motion: &Motion) -> 
         + ties.energy(&motion.displacement)
 }
 
-/// Kinetic and strain energy of one moment [J/m], that of the displacements.
+/// What the sum of kinetic and strain energy lacks because velocities are those of half a step before [J/m].
 ///
 /// What the leapfrog keeps is ½ v(t − Δt/2) · M v(t + Δt/2) + U(t). The later velocity is the earlier one after a kick
-/// by the forces of now, so this is the sum of the two energies with half the work of the forces over a step besides.
-pub(super) fn energy_of_moment(lattice: &Lattice, ties: &Ties, motion: &Motion) -> f64 {
+/// by the forces of now, so what is missing is half the work that these do over a step.
+pub(super) fn energy_of_lag(lattice: &Lattice, ties: &Ties, motion: &Motion) -> f64 {
     let mut force = FieldVectors::default();
     internal_forces(lattice, ties, &motion.displacement, &mut force);
     let power: f64 =
         motion.velocity.iter().flatten().zip(force.iter().flatten()).map(|(speed, force)| speed * force).sum();
-    kinetic_energy(lattice, ties, motion) + strain_energy(lattice, ties, motion) + motion.lag() * power
+    motion.lag() * power
 }
 
 /// Linear [N s/m] and angular momentum about the origin [N s].
