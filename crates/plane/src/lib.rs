@@ -12,7 +12,7 @@
 //! points, by edge: the place nearest to a point with its ring, its edge and the bits of a corner; the place where
 //! lines cross or run back; a point on an edge told to one side only. `geo` wants closed copies of each ring, says that
 //! a polygon is not valid and not where, and tells points on an edge to no side. It would also bring a second
-//! `i_overlay` and 15 s of compiling to every build of the solver.
+//! `i_overlay` to every build of the solver.
 //!
 //! ```
 //! use fissure_plane::{Point, Region, find_crossing, segments_touch};
