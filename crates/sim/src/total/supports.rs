@@ -6,7 +6,7 @@ use super::near::Near;
 use crate::SimulationError;
 use crate::boundary::selector::Selector;
 use crate::boundary::supports::prescribed;
-use fissure_plane::Point;
+use fissure_plane::{Point, Vector};
 use fissure_scene::{Scene, Support};
 
 /// A prescribed velocity of one field.
@@ -75,6 +75,9 @@ impl Supports {
 }
 
 /// Whether a support holds a field whose node is at `place` at rest.
+///
+/// A node beside a crack has a field for the material on each side of it. The one across the crack is held only if the
+/// support means that material too: a support that ends at a notch does not hold the other face of it.
 fn holds(selector: &Selector<'_>, lattice: &Lattice, field: usize, place: Point, bodies: &[u32]) -> bool {
     if lattice.mass()[field] == 0.0 {
         return false;
@@ -82,6 +85,19 @@ fn holds(selector: &Selector<'_>, lattice: &Lattice, field: usize, place: Point,
     let (body, h) = (bodies[field] as usize, lattice.grid.cell_size);
     // Nodes on an edge and, where the edge is not on a grid line, those beyond it or nearer than half a cell.
     selector.selects(place, body, 0.499 * h, h)
+        && (lattice.fields().crossed(field).is_empty() || has_selected_particle(selector, lattice, field, place))
+}
+
+/// Whether a support selects one of the particles of a field whose node is at `place` at rest.
+fn has_selected_particle(selector: &Selector<'_>, lattice: &Lattice, field: usize, place: Point) -> bool {
+    let particles = &lattice.particles;
+    let reach = Vector::repeat(lattice.reach() * lattice.grid.cell_size);
+    let mut reader = lattice.reader();
+    particles.in_box(place - reach, place + reach).any(|p| {
+        let mut is_own = false;
+        reader.for_each_entry(p, |of, weight, _| is_own |= of == field && weight > 0.0);
+        is_own && selector.selects(particles.rest[p], particles.body[p] as usize, particles.spacing, 0.0)
+    })
 }
 
 /// The body each field belongs to.

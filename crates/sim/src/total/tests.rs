@@ -6,7 +6,7 @@ use crate::crack::cracks::{Cracks, TipId};
 use crate::particles::Particles;
 use crate::solver::{SlidingTips, Snapshot, Solver};
 use crate::test_scenes;
-use fissure_scene::{End, Formulation, Kernel, Scene, Selection, TipDivision, Vector};
+use fissure_scene::{End, Formulation, Kernel, Scene, Selection, Support, TipDivision, Vector};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -237,6 +237,36 @@ fn nodes_and_state_go_with_the_material() {
             "{}",
             both.save().unwrap().len()
         );
+    }
+}
+
+/// Truth: halves that are parted do not feel each other. A support that ends just below the crack moves the lower one,
+/// and no part of the upper one, wherever between the rows of nodes and particles the crack lies.
+#[test]
+fn a_support_that_ends_at_a_crack_holds_one_face_only() {
+    for height in [1.91, 2.0, 2.03, 2.05, 2.1, 2.17] {
+        let mut scene = test_scenes::free_body(test_scenes::rectangle([0.0, 0.0], [4.0, 4.0]), 0.1);
+        scene.solver.formulation = Formulation::Total;
+        scene.solver.kernel = Kernel::Bilinear;
+        scene.solver.crack_contact = false;
+        test_scenes::add_crack(&mut scene, &[[0.0, height], [4.0, height]]);
+        scene.supports.push(Support {
+            selection: Selection::Region(test_scenes::rectangle([0.0, 0.0], [0.3, height - 0.001])),
+            velocity: [Some(1.0), None],
+            curve: test_scenes::always(),
+        });
+        let (mut total, cracks) = solver(&scene);
+        let time_step = 0.5 * total.stable_time_step();
+        for step in 0..20 {
+            total.step(&cracks, time_step * f64::from(step), time_step, &mut |_| ()).unwrap();
+        }
+        let frame = total.particle_frame();
+        let fastest = |is_above: bool| {
+            let of_half = frame.rest.iter().zip(&frame.velocity).filter(|(place, _)| (place.y >= height) == is_above);
+            of_half.map(|(_, velocity)| velocity.norm()).fold(0.0, f64::max)
+        };
+        // A particle on the crack belongs to its upper side.
+        assert!(fastest(false) > 0.9 && fastest(true) == 0.0, "{height}: {} {}", fastest(false), fastest(true));
     }
 }
 
