@@ -32,6 +32,15 @@ impl Lattice {
         entries
     }
 
+    /// Whether a particle is served by the nodes' own fields alone, and by the weights of its place.
+    ///
+    /// One that has a stencil of its own keeps it, be the crack that it was cut for no longer near: what lies ahead of
+    /// a tip leaves its neighbourhood again when the tip turns. A cell that went back to its row all the same would act
+    /// twice.
+    pub(super) fn is_whole(&self, particle: usize) -> bool {
+        self.layout.cut.entries_of(particle).is_none() && !self.division.is_near(self.particles.rest[particle])
+    }
+
     /// Whether all four particles of a cell are there, whole, and of one material; then its material.
     fn whole_cell(&self, column: i32, row: i32) -> Option<u32> {
         // Place of the cell's lower left particle on the particle lattice, which starts at a node.
@@ -41,7 +50,7 @@ impl Lattice {
         let mut body = None;
         for (i, j) in [(i0, j0), (i0 + 1, j0), (i0, j0 + 1), (i0 + 1, j0 + 1)] {
             let p = self.particles.at([i, j])?;
-            if self.division.is_near(self.particles.rest[p]) {
+            if !self.is_whole(p) {
                 return None;
             }
             if *material.get_or_insert(self.particles.material[p]) != self.particles.material[p]

@@ -71,8 +71,8 @@ impl Lattice {
     fn recut_particles(&mut self, boxes: &[(Point, Point)], motion: &mut Motion) {
         let mut affected: Vec<usize> = Vec::new();
         for &(low, high) in boxes {
-            affected
-                .extend(self.particles.in_box(low, high).filter(|&p| self.division.is_near(self.particles.rest[p])));
+            // Those that no crack is near any more become whole again.
+            affected.extend(self.particles.in_box(low, high).filter(|&p| !self.is_whole(p)));
         }
         affected.sort_unstable();
         affected.dedup();

@@ -1,6 +1,7 @@
 //! Conservation in the total Lagrangian solver, against closed forms.
 #![allow(clippy::unwrap_used)]
 
+use super::field_vectors::FieldVectors;
 use super::{Total, internal_forces};
 use crate::crack::cracks::{Cracks, TipId};
 use crate::particles::Particles;
@@ -115,6 +116,37 @@ fn a_turning_crack_leaves_the_strain_as_it_is() {
         total.step(&cracks, time_step * f64::from(step), time_step, &mut |_| ()).unwrap();
     }
     assert!(misfit(&total) < 1e-6 * first, "{first} {}", misfit(&total));
+}
+
+/// Truth: the difference quotient. After every recut of a crack that turns this way and that, so that what lay ahead of
+/// its tip lies beside it and ahead again, the internal force is the slope of the strain energy: every particle acts
+/// just once.
+#[test]
+fn forces_are_the_slope_of_the_energy_wherever_a_tip_turns() {
+    let (mut total, mut cracks) = opened();
+    let h = total.lattice.grid.cell_size;
+    for k in 0..24 {
+        let angle = 1.2 * (f64::from(k) * 1.9).sin();
+        let tip = cracks.position(TIP);
+        cracks.grow(TIP, &[tip + Vector::new(angle.cos(), angle.sin()) * 0.25 * h]);
+        total.recut(&cracks, &[TIP]);
+        let u = total.motion.displacement.clone();
+        let fields = u[0].len();
+        // Any direction in which every field moves otherwise.
+        let way: FieldVectors = [0.37, 0.71].map(|rate| (0..fields).map(|d| (d as f64 * rate).sin()).collect());
+        let mut force = FieldVectors::default();
+        internal_forces(&total.lattice, &total.ties, &u, &mut force);
+        let power: f64 = way.iter().flatten().zip(force.iter().flatten()).map(|(w, f)| w * f).sum();
+        let step = 1e-6;
+        let mut energy = |by: f64| {
+            let moved = |axis: usize| u[axis].iter().zip(&way[axis]).map(|(u, w)| u + by * w).collect();
+            total.motion.displacement = std::array::from_fn(moved);
+            total.energies().strain
+        };
+        let slope = (energy(step) - energy(-step)) / (2.0 * step);
+        total.motion.displacement = u;
+        assert!((slope + power).abs() < 1e-6 * slope.abs(), "recut {k}: {slope} {power}");
+    }
 }
 
 /// Truth: Rayleigh's quotient, (K + k)/(M + k/ω²) ≤ ω². At nearly the largest step of the lattice without ties, ties
