@@ -10,8 +10,13 @@ use fissure_scene::{Load, LoadKind, Point, Scene, Selection, Vector};
 pub(crate) enum ForcePlace {
     /// On a particle.
     Particle(u32),
-    /// At a place of an outline at rest [m].
-    Outline(Point),
+    /// On the outline of a body.
+    Outline {
+        /// The body.
+        body: u32,
+        /// At rest [m].
+        place: Point,
+    },
 }
 
 /// A force at a place of the material.
@@ -55,15 +60,22 @@ fn by_volume(scene: &Scene, particles: &Particles, selection: &Selection, total:
     selected.into_iter().map(|p| PointForce { place: ForcePlace::Particle(p), force: force(p) }).collect()
 }
 
+/// So far beside an outline, in cells, is its own body.
+const HAIR: f64 = 1e-6;
+
 /// A traction on the selected pieces of the outlines, by their length: a force in the middle of each half cell, so that
 /// every node gets the load of its hat.
 fn along_outlines(scene: &Scene, spacing: f64, selection: &Selection, traction: Vector) -> Vec<PointForce> {
     let mut forces = Vec::new();
     for [a, b] in Selector::new(scene, selection).pieces(scene) {
+        // The material lies to the left, where another body may be as near on the right.
+        let inwards = Vector::new(a.y - b.y, b.x - a.x).normalize() * (HAIR * scene.cell_size);
+        let beside = nalgebra::center(&a, &b) + inwards;
+        let body = scene.bodies.iter().position(|body| body.region.contains(beside)).unwrap_or(0) as u32;
         let pieces = ((b - a).norm() / spacing).round().max(1.0) as usize;
         let force = traction * ((b - a).norm() / pieces as f64);
         let middle = |k: usize| a + (b - a) * ((k as f64 + 0.5) / pieces as f64);
-        forces.extend((0..pieces).map(|k| PointForce { place: ForcePlace::Outline(middle(k)), force }));
+        forces.extend((0..pieces).map(|k| PointForce { place: ForcePlace::Outline { body, place: middle(k) }, force }));
     }
     forces
 }
@@ -98,7 +110,7 @@ mod tests {
             for at in forces_of_load(&scene, &particles, index).unwrap() {
                 let place = match at.place {
                     ForcePlace::Particle(p) => particles.rest[p as usize],
-                    ForcePlace::Outline(place) => place,
+                    ForcePlace::Outline { place, .. } => place,
                 };
                 sum += at.force;
                 moment += (place - middle).perp(&at.force);

@@ -33,19 +33,22 @@ const SPACING: f64 = 0.5;
 const CLOSE: f64 = 1e-9;
 
 impl<V: Vertex> Outlines<V> {
-    /// The rings of the bodies of `scene` without mouths; `vertex` makes a vertex from its place at rest.
-    pub(crate) fn at_rest(scene: &Scene, vertex: impl Fn(Point) -> V) -> Self {
+    /// The rings of the bodies of `scene` without mouths; `vertex` makes a vertex of a body from its place at rest.
+    pub(crate) fn at_rest(scene: &Scene, vertex: impl Fn(u32, Point) -> V) -> Self {
         let spacing = SPACING * scene.cell_size;
-        let lay = |ring: &[Point]| {
+        let lay = |body: u32, ring: &[Point]| {
             let mut vertices = Vec::new();
             for i in 0..ring.len() {
                 let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
                 let pieces = ((b - a).norm() / spacing).ceil().max(1.0) as usize;
-                vertices.extend((0..pieces).map(|k| vertex(a + (b - a) * (k as f64 / pieces as f64))));
+                vertices.extend((0..pieces).map(|k| vertex(body, a + (b - a) * (k as f64 / pieces as f64))));
             }
             vertices
         };
-        Self { rings: scene.bodies.iter().flat_map(|body| body.region.rings().map(lay)).collect() }
+        let bodies = scene.bodies.iter().enumerate();
+        Self {
+            rings: bodies.flat_map(|(index, body)| body.region.rings().map(move |r| lay(index as u32, r))).collect(),
+        }
     }
 
     /// Doubles the outline where a crack mouths at it, with its `end` at `place`, at rest [m]: the two new vertices are

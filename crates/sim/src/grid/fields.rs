@@ -2,7 +2,8 @@
 //!
 //! Every node has its own field; its degree of freedom has the number of the node. Nodes near cracks have further
 //! fields, one for each set of (crack, side) that particles cross on the way to the node; their number is not limited,
-//! and a scene without a crack has none.
+//! and a scene without a crack has none. A node that several bodies see is one body's own
+//! ([`SharedNodes`](crate::grid::shared_nodes::SharedNodes)); the others have fields of their own there.
 
 use crate::crack::crossing::Side;
 use crate::crack::division::{CrossedSet, facing};
@@ -14,6 +15,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct FurtherField {
     node: u32,
+    /// The body it serves, when the node is another body's own.
+    guest: Option<u32>,
     /// What particles cross on their way to the node.
     crossed: CrossedSet,
 }
@@ -83,13 +86,14 @@ impl Fields {
         self.of_node.clear();
     }
 
-    /// Checks fields that were read against so many `nodes` and `cracks`.
+    /// Checks fields that were read against so many `nodes`, `bodies` and `cracks`.
     ///
     /// # Errors
     /// [`SimulationError::BadState`](crate::SimulationError::BadState)
-    pub(crate) fn check(&self, nodes: usize, cracks: usize) -> Fits {
+    pub(crate) fn check(&self, nodes: usize, bodies: usize, cracks: usize) -> Fits {
         saved::ensure(self.nodes == nodes, "its number of nodes")?;
         saved::below("a field", self.further.iter().map(|field| field.node), nodes)?;
+        saved::below("a field", self.further.iter().filter_map(|field| field.guest), bodies)?;
         let crossed = self.further.iter().flat_map(|field| &field.crossed);
         saved::below("a field", crossed.map(|(crack, _)| *crack), cracks)
     }
@@ -119,13 +123,19 @@ impl Fields {
         field.checked_sub(self.nodes).map_or(&[], |further| &self.further[further].crossed)
     }
 
-    /// The field at `node` for particles across `crossed`, if it exists.
-    pub(crate) fn find(&self, node: usize, crossed: &CrossedSet) -> Option<usize> {
-        if crossed.is_empty() {
+    /// The body a field serves, when its node is another body's own.
+    pub(crate) fn guest(&self, field: usize) -> Option<u32> {
+        field.checked_sub(self.nodes).and_then(|further| self.further[further].guest)
+    }
+
+    /// The field at `node` for particles across `crossed`, if it exists; of the body `guest` when the node is another
+    /// body's own.
+    pub(crate) fn find(&self, node: usize, guest: Option<u32>, crossed: &CrossedSet) -> Option<usize> {
+        if guest.is_none() && crossed.is_empty() {
             return Some(node);
         }
         let mut fields = self.of(node).iter().map(|&field| field as usize);
-        fields.find(|&field| self.crossed(field) == crossed.as_slice())
+        fields.find(|&field| self.guest(field) == guest && self.crossed(field) == crossed.as_slice())
     }
 
     /// The further fields of a node, rising.
@@ -133,13 +143,13 @@ impl Fields {
         self.of_node.get(&(node as u32)).map_or(&[], Vec::as_slice)
     }
 
-    /// The field at `node` for particles across `crossed`, made when it does not exist.
-    pub(crate) fn find_or_add(&mut self, node: usize, crossed: &CrossedSet) -> usize {
-        if let Some(field) = self.find(node, crossed) {
+    /// As [`Fields::find`]; the field is made when it does not exist.
+    pub(crate) fn find_or_add(&mut self, node: usize, guest: Option<u32>, crossed: &CrossedSet) -> usize {
+        if let Some(field) = self.find(node, guest, crossed) {
             return field;
         }
         let field = self.len();
-        self.further.push(FurtherField { node: node as u32, crossed: crossed.clone() });
+        self.further.push(FurtherField { node: node as u32, guest, crossed: crossed.clone() });
         self.of_node.entry(node as u32).or_default().push(field as u32);
         field
     }
@@ -151,13 +161,14 @@ impl Fields {
         nodes
     }
 
-    /// All pairs of `fields`, which are of one node, that face each other across one crack.
+    /// All pairs of `fields`, which are of one node, that face each other across one crack of their body.
     pub(crate) fn facing_pairs(&self, fields: &[u32]) -> impl Iterator<Item = FacingFields> {
         let pairs = fields
             .iter()
             .enumerate()
             .flat_map(|(k, &first)| fields[k + 1..].iter().map(move |&second| (first, second)));
-        pairs.filter_map(|(first, second)| {
+        let of_one_body = |&(first, second): &(u32, u32)| self.guest(first as usize) == self.guest(second as usize);
+        pairs.filter(of_one_body).filter_map(|(first, second)| {
             let (crack, side) = facing(self.crossed(first as usize), self.crossed(second as usize))?;
             Some(FacingFields { first, second, crack, side })
         })
@@ -174,10 +185,14 @@ mod tests {
     #[test]
     fn fields_face_across_one_crack() {
         let mut fields = Fields::new(10);
-        let above = fields.find_or_add(7, &vec![(0, Side::Above)]) as u32;
-        let below = fields.find_or_add(7, &vec![(1, Side::Below)]) as u32;
-        assert_eq!(fields.find_or_add(7, &vec![(0, Side::Above)]) as u32, above);
-        let found: Vec<_> = fields.facing_pairs(&[7, above, below]).map(|p| (p.crack, p.above_and_below())).collect();
+        let above = fields.find_or_add(7, None, &vec![(0, Side::Above)]) as u32;
+        let below = fields.find_or_add(7, None, &vec![(1, Side::Below)]) as u32;
+        assert_eq!(fields.find_or_add(7, None, &vec![(0, Side::Above)]) as u32, above);
+        // Another body there is whole: it faces nothing.
+        let guest = fields.find_or_add(7, Some(1), &Vec::new()) as u32;
+        assert_eq!(fields.find_or_add(7, Some(1), &Vec::new()) as u32, guest);
+        let all = [7, above, below, guest];
+        let found: Vec<_> = fields.facing_pairs(&all).map(|p| (p.crack, p.above_and_below())).collect();
         assert_eq!(found, [(0, [above, 7]), (1, [7, below])]);
         let bytes = saved::to_bytes(&fields).unwrap();
         assert_eq!(saved::from_bytes::<Fields>(&bytes).unwrap(), fields);

@@ -18,6 +18,7 @@ pub(crate) mod fields;
 pub(crate) mod kernel;
 mod laying;
 pub(crate) mod scan;
+pub(crate) mod shared_nodes;
 pub(crate) mod spans;
 pub(crate) mod walker;
 

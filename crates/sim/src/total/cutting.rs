@@ -3,13 +3,14 @@
 
 use super::lattice::Lattice;
 use super::run::Run;
+use crate::crack::division::CrossedSet;
 use crate::grid::entries::Entry;
 use crate::grid::walker::Walker;
 
 impl Lattice {
     /// Entries of a particle, cut by the cracks as they are; fields that do not exist yet are made.
     pub(super) fn make_entries(&mut self, particle: usize) -> Vec<Entry> {
-        let place = self.particles.rest[particle];
+        let (place, body) = (self.particles.rest[particle], self.particles.body[particle]);
         let stencil = self.stencil(place);
         let near = self.division.is_near(place);
         let nodes = self.grid.stencil(&stencil);
@@ -18,12 +19,14 @@ impl Lattice {
             for a in 0..stencil.width {
                 let (w, g) = (stencil.weight(a, b), stencil.weight_gradient(a, b));
                 let Some(node) = nodes.at(a, b) else { continue };
+                let guest = self.shared.guest(node, body);
                 if !near {
-                    entries.push(Entry { field: node as u32, weight: w, gradient: g });
+                    let field = self.layout.fields.find_or_add(node, guest, &CrossedSet::new());
+                    entries.push(Entry { field: field as u32, weight: w, gradient: g });
                     continue;
                 }
-                for share in self.division.pair(place, nodes.place(a, b)) {
-                    let field = self.layout.fields.find_or_add(node, &share.crossed);
+                for share in self.shares(body, place, nodes.place(a, b)) {
+                    let field = self.layout.fields.find_or_add(node, guest, &share.crossed);
                     let gradient = g * share.fraction + share.gradient * w;
                     entries.push(Entry { field: field as u32, weight: w * share.fraction, gradient });
                 }
@@ -41,8 +44,9 @@ impl Lattice {
         self.layout.cut.entries_of(particle).is_none() && !self.division.is_near(self.particles.rest[particle])
     }
 
-    /// Whether all four particles of a cell are there, whole, and of one material; then its material.
-    fn whole_cell(&self, column: i32, row: i32) -> Option<u32> {
+    /// Whether all four particles of a cell are there, whole, of one material and of the body that owns all its nodes,
+    /// which are two each from `rows` on; then its material.
+    fn whole_cell(&self, column: i32, row: i32, rows: [usize; 2]) -> Option<u32> {
         // Place of the cell's lower left particle on the particle lattice, which starts at a node.
         let base = (self.grid.origin - self.particles.anchor) / self.particles.spacing;
         let (i0, j0) = (base.x.round() as i32 + 2 * column, base.y.round() as i32 + 2 * row);
@@ -59,6 +63,11 @@ impl Lattice {
                 return None;
             }
         }
+        let body = body?;
+        let mut nodes = rows.into_iter().flat_map(|node| [node, node + 1]);
+        if nodes.any(|node| self.shared.guest(node, body).is_some()) {
+            return None;
+        }
         material
     }
 
@@ -73,7 +82,7 @@ impl Lattice {
         for span in self.grid.spans_of_row(index) {
             for column in span.first..span.end - 1 {
                 let Some(rows) = walker.rows([column, row], 2) else { continue };
-                let Some(material) = self.whole_cell(column, row) else { continue };
+                let Some(material) = self.whole_cell(column, row, [rows[0], rows[1]]) else { continue };
                 let [lower, upper] = [rows[0] as u32, rows[1] as u32];
                 match runs.last_mut() {
                     Some(run) if run.material == material && run.lower + run.count == lower => run.count += 1,

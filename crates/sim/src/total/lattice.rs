@@ -5,10 +5,12 @@ use super::cut::CutParticles;
 use super::run::Run;
 use crate::SimulationError;
 use crate::crack::cracks::Cracks;
-use crate::crack::division::{Division, TipCut};
+use crate::crack::division::{Division, Share, TipCut};
 use crate::grid::Grid;
 use crate::grid::fields::Fields;
 use crate::grid::kernel;
+use crate::grid::shared_nodes::SharedNodes;
+use crate::grid::walker::Walker;
 use crate::material::elastic::Elastic;
 use crate::particles::Particles;
 use crate::saved::{self, Fits};
@@ -30,6 +32,10 @@ pub(super) struct Lattice {
     pub(super) division: Division,
     /// How particles see nodes now.
     pub(super) layout: Layout,
+    /// Nodes that several bodies see.
+    pub(super) shared: SharedNodes,
+    /// Body of each crack.
+    body_of_crack: Vec<u32>,
     /// One over the mass of each field [m/kg]; zero where there is none.
     pub(super) inverse_mass: Vec<f64>,
     kernel: Kernel,
@@ -78,9 +84,13 @@ impl Lattice {
             cut: CutParticles::new(particles.len()),
             runs: vec![Vec::new(); grid.rows()],
         };
+        let shared =
+            if scene.bodies.len() > 1 { shared_nodes(kernel, &grid, &particles) } else { SharedNodes::default() };
         Ok(Self {
             grid,
             particles,
+            shared,
+            body_of_crack: Vec::new(),
             materials: scene.materials.iter().map(|m| Elastic::new(m, scene.plane)).collect(),
             division: Division::new(&[], tip_division, cut, scene.cell_size, scene.particle_spacing, 1.0),
             layout,
@@ -98,6 +108,35 @@ impl Lattice {
         let cut = TipCut::tied(self.split_ahead);
         self.division =
             Division::new(&lines, self.tip_division, cut, self.grid.cell_size, self.particles.spacing, reach);
+        self.body_of_crack.clear();
+        self.body_of_crack.extend(cracks.iter().map(|crack| crack.body));
+    }
+
+    /// The shares of a pair of `place`, which belongs to `body`, and a node at `node`. A crack goes on beyond its
+    /// mouth, where another body may lie that it does not cut.
+    pub(super) fn shares(&self, body: u32, place: Point, node: Point) -> Vec<Share> {
+        let shares = self.division.pair(place, node);
+        let is_own = |crack: u32| self.body_of_crack[crack as usize] == body;
+        if shares.iter().all(|share| share.crossed.iter().all(|&(crack, _)| is_own(crack))) {
+            return shares;
+        }
+        let mut own: Vec<Share> = Vec::with_capacity(shares.len());
+        for mut share in shares {
+            share.crossed.retain(|&(crack, _)| is_own(crack));
+            match own.iter_mut().find(|other| other.crossed == share.crossed) {
+                Some(other) => {
+                    other.fraction += share.fraction;
+                    other.gradient += share.gradient;
+                }
+                None => own.push(share),
+            }
+        }
+        own
+    }
+
+    /// Whether a crack of `body` lies between two places of it.
+    pub(super) fn is_across(&self, body: u32, from: Point, to: Point) -> bool {
+        self.division.crossed(from, to).iter().any(|&(crack, _)| self.body_of_crack[crack as usize] == body)
     }
 
     /// The material of a particle.
@@ -188,7 +227,8 @@ impl Lattice {
     /// [`SimulationError::BadState`]
     pub(super) fn check(&self, layout: &Layout, cracks: usize) -> Fits {
         let fields = layout.fields.len();
-        layout.fields.check(self.grid.len(), cracks)?;
+        let bodies = self.particles.body.last().map_or(0, |&last| last as usize + 1);
+        layout.fields.check(self.grid.len(), bodies, cracks)?;
         saved::ensure(layout.mass.len() == fields, "its number of fields")?;
         saved::finite("a field", &layout.mass)?;
         layout.cut.check(self.particles.len(), fields)?;
@@ -200,6 +240,21 @@ impl Lattice {
         }
         saved::below("a run of cells", layout.runs.iter().flatten().map(|run| run.material), self.materials.len())
     }
+}
+
+/// The nodes of `grid` that particles of several bodies see.
+fn shared_nodes(kernel: Kernel, grid: &Grid, particles: &Particles) -> SharedNodes {
+    SharedNodes::new(grid.len(), |see| {
+        let mut walker = Walker::new(grid);
+        for (&body, &place) in particles.body.iter().zip(&particles.rest) {
+            let stencil = stencil(kernel, particles.spacing, grid, place);
+            // All nodes of a particle exist.
+            let Some(rows) = walker.rows(stencil.first, stencil.width) else { continue };
+            for row in &rows[..stencil.width] {
+                (*row..row + stencil.width).for_each(|node| see(body, node));
+            }
+        }
+    })
 }
 
 fn stencil(kernel: Kernel, spacing: f64, grid: &Grid, place: Point) -> kernel::Stencil {

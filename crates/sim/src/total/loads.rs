@@ -29,11 +29,11 @@ impl Loads {
     /// When a load selects nothing.
     pub(super) fn new(scene: &Scene, lattice: &Lattice) -> Result<Self, SimulationError> {
         let on_probe = |at: loads::PointForce| {
-            let place = match at.place {
-                ForcePlace::Particle(p) => lattice.particles.rest[p as usize],
-                ForcePlace::Outline(place) => place,
+            let (body, place) = match at.place {
+                ForcePlace::Particle(p) => (lattice.particles.body[p as usize], lattice.particles.rest[p as usize]),
+                ForcePlace::Outline { body, place } => (body, place),
             };
-            ProbeForce { probe: lattice.probe(place, place), force: at.force }
+            ProbeForce { probe: lattice.probe(body, place, place), force: at.force }
         };
         let of_load = |index| {
             let forces = loads::forces_of_load(scene, &lattice.particles, index)?;
@@ -45,7 +45,7 @@ impl Loads {
     /// Lays the places of loads anew where something has changed.
     pub(super) fn refresh(&mut self, near: &Near, lattice: &Lattice) {
         for force in self.0.iter_mut().flatten().filter(|force| near.contains(force.probe.rest)) {
-            force.probe = lattice.probe(force.probe.rest, force.probe.nudged);
+            force.probe = lattice.probe(force.probe.body, force.probe.rest, force.probe.nudged);
         }
     }
 

@@ -130,7 +130,7 @@ impl Look<'_> {
                 // Seen from the tip looking ahead, left and right are the other way round.
                 let [left, right] = [-hair, hair];
                 let value = |offset: Vector| -> Option<Vector> {
-                    let probe = self.lattice.probe(place, place + offset);
+                    let probe = self.lattice.probe(line.body, place, place + offset);
                     (!probe.entries.is_empty()).then(|| probe.value(&self.motion.displacement))
                 };
                 if let (Some(a), Some(b)) = (value(left), value(right)) {

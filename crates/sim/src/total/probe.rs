@@ -7,13 +7,16 @@ use crate::saved::{self, Fits};
 use fissure_plane::{Point, Vector};
 use serde::{Deserialize, Serialize};
 
-/// A place at rest that rides on the material: a vertex of an outline, a point of a crack face, a place of a load.
+/// A place at rest that rides on the material of a body: a vertex of an outline, a point of a crack face, a place of a
+/// load.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Probe {
     /// Where it is at rest [m].
     pub(super) rest: Point,
     /// A hair beside it, on the side of the crack it belongs to [m].
     pub(super) nudged: Point,
+    /// The body.
+    pub(super) body: u32,
     /// (field, weight).
     pub(super) entries: Vec<(u32, f64)>,
 }
@@ -61,19 +64,22 @@ impl Probe {
 const ROUND_OFF: f64 = 1e-9;
 
 impl Lattice {
-    /// A probe at `rest` that belongs to the material at `nudged`.
-    pub(super) fn probe(&self, rest: Point, nudged: Point) -> Probe {
-        Probe { rest, nudged, entries: self.probe_entries(rest, nudged) }
+    /// A probe at `rest` that belongs to the material of `body` at `nudged`.
+    pub(super) fn probe(&self, body: u32, rest: Point, nudged: Point) -> Probe {
+        Probe { rest, nudged, body, entries: self.probe_entries(body, rest, nudged) }
     }
 
     /// (field, weight) of a probe. Where a node has no material on the probe's side, the nearest particle carries the
     /// probe along linearly instead: w_ip + ∇w_ip · (X − X_p), exact for rigid motion.
-    pub(super) fn probe_entries(&self, rest: Point, nudged: Point) -> Vec<(u32, f64)> {
+    pub(super) fn probe_entries(&self, body: u32, rest: Point, nudged: Point) -> Vec<(u32, f64)> {
         let stencil = self.stencil(rest);
         let nodes = self.grid.stencil(&stencil);
         let mass = |field: usize| self.layout.mass[field];
+        let fields = &self.layout.fields;
+        let guest = |node: usize| self.shared.guest(node, body);
         let has_material = |&node: &usize| {
-            mass(node) > 0.0 || self.layout.fields.of(node).iter().any(|&field| mass(field as usize) > 0.0)
+            let all = std::iter::once(node).chain(fields.of(node).iter().map(|&field| field as usize));
+            all.into_iter().any(|field| mass(field) > 0.0 && fields.guest(field) == guest(node))
         };
         let mut entries = Vec::with_capacity(8);
         for b in 0..stencil.width {
@@ -89,11 +95,11 @@ impl Lattice {
                     }
                     node => node.map(|node| (node, nodes.place(a, b))),
                 };
-                let Some((node, place)) = found else { return self.carried_entries(rest, nudged) };
-                for share in self.division.pair(nudged, place) {
-                    match self.layout.fields.find(node, &share.crossed) {
+                let Some((node, place)) = found else { return self.carried_entries(body, rest, nudged) };
+                for share in self.shares(body, nudged, place) {
+                    match fields.find(node, guest(node), &share.crossed) {
                         Some(field) if mass(field) > 0.0 => entries.push((field as u32, w * share.fraction)),
-                        _ => return self.carried_entries(rest, nudged),
+                        _ => return self.carried_entries(body, rest, nudged),
                     }
                 }
             }
@@ -101,16 +107,15 @@ impl Lattice {
         entries
     }
 
-    fn carried_entries(&self, rest: Point, nudged: Point) -> Vec<(u32, f64)> {
+    fn carried_entries(&self, body: u32, rest: Point, nudged: Point) -> Vec<(u32, f64)> {
         let at = (rest - self.particles.anchor) / self.particles.spacing;
         let center = [at.x.floor() as i32, at.y.floor() as i32];
         let mut nearest: Option<(bool, f64, usize)> = None;
         for reach in [2, 6] {
-            for p in
-                self.particles.within(center.map(|c| c.saturating_sub(reach)), center.map(|c| c.saturating_add(reach)))
-            {
+            let (low, high) = (center.map(|c| c.saturating_sub(reach)), center.map(|c| c.saturating_add(reach)));
+            for p in self.particles.within(low, high).filter(|&p| self.particles.body[p] == body) {
                 let place = self.particles.rest[p];
-                let across = !self.division.crossed(place, nudged).is_empty();
+                let across = self.is_across(body, place, nudged);
                 let candidate = (across, (place - rest).norm_squared(), p);
                 if nearest.is_none_or(|n| candidate < n) {
                     nearest = Some(candidate);

@@ -28,7 +28,7 @@ impl Lattice {
         let after = crack.points[(k + 1).min(crack.points.len() - 1)];
         let tangent = (after - before).normalize();
         let normal = Vector::new(-tangent.y, tangent.x) * side.sign();
-        self.probe(crack.points[k], crack.points[k] + normal * (NUDGE * self.grid.cell_size))
+        self.probe(crack.body, crack.points[k], crack.points[k] + normal * (NUDGE * self.grid.cell_size))
     }
 }
 
@@ -48,7 +48,7 @@ impl Probes {
     /// Lays the probes of outlines and crack faces.
     pub(super) fn new(scene: &Scene, lattice: &Lattice, cracks: &Cracks) -> Self {
         let faces = cracks.iter().map(|c| lattice.face_probes(c)).collect();
-        let outlines = Outlines::at_rest(scene, |place| lattice.probe(place, place));
+        let outlines = Outlines::at_rest(scene, |body, place| lattice.probe(body, place, place));
         let mut probes = Self { outlines, faces };
         for id in cracks.ids().filter(|&id| cracks.end(id) == CrackEnd::Mouth) {
             probes.open_mouth(lattice, cracks, id);
@@ -93,7 +93,7 @@ impl Probes {
             }
         }
         for probe in self.outlines.vertices_mut().filter(|probe| within(probe.rest)) {
-            probe.entries = lattice.probe_entries(probe.rest, probe.nudged);
+            probe.entries = lattice.probe_entries(probe.body, probe.rest, probe.nudged);
         }
         for &id in changed {
             if cracks.end(id) == CrackEnd::Mouth {

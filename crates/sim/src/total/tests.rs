@@ -327,3 +327,37 @@ fn threads_change_no_bit_of_the_forces() {
         assert!(forces(threads) == alone, "{threads} threads");
     }
 }
+
+/// Truth: free flight. Two plates that lie on each other at rest, off the lattice, part with no force between them; the
+/// crack that mouths at one of them does not cut the other.
+#[test]
+fn bodies_that_lie_on_each_other_part() {
+    let mut scene = test_scenes::free_body(test_scenes::rectangle([0.0, 0.0], [2.07, 2.0]), 0.1);
+    scene.solver.formulation = Formulation::Total;
+    scene.solver.kernel = Kernel::Bilinear;
+    scene.solver.tip_division = TipDivision::PartlyCut;
+    test_scenes::add_crack(&mut scene, &[[2.07, 1.03], [1.0, 1.03]]);
+    test_scenes::add_body(&mut scene, [2.07, 0.0]);
+    test_scenes::set_motion(&mut scene, Selection::All, [-0.7, 0.3], 0.0, [0.0, 0.0]);
+    let (mut total, cracks) = solver(&scene);
+    let guests = total.lattice.grid.len()..total.lattice.field_count();
+    let crossed = |field: usize| total.lattice.fields().crossed(field).is_empty();
+    assert!(guests.clone().any(|field| total.lattice.fields().guest(field) == Some(1)));
+    assert!(guests.into_iter().all(|field| total.lattice.fields().guest(field).is_none() || crossed(field)));
+    let time_step = 0.5 * total.stable_time_step();
+    for step in 0..50 {
+        total.step(&cracks, time_step * f64::from(step), time_step, &mut |_| ()).unwrap();
+    }
+    let frame = total.particle_frame();
+    for (body, velocity) in frame.body.iter().zip(&frame.velocity) {
+        let expected = if *body == 0 { Vector::new(-0.7, 0.3) } else { Vector::zeros() };
+        assert!((velocity - expected).norm() < 1e-11, "{body} {velocity}");
+    }
+    let outlines = total.outline_frames();
+    for outline in &outlines {
+        let away = if outline.body == 0 { Vector::new(-0.7, 0.3) * (50.0 * time_step) } else { Vector::zeros() };
+        for (now, rest) in outline.position.iter().zip(&outline.rest) {
+            assert!((now - rest - away).norm() < 1e-11, "{} {now} {rest}", outline.body);
+        }
+    }
+}

@@ -34,7 +34,7 @@ impl Lattice {
         self.stencils.clear(points.len());
         for (p, raws) in particles.into_iter().zip(raws) {
             let entries = raws.into_iter().map(|raw| {
-                let field = self.fields.find_or_add(raw.node as usize, &raw.crossed) as u32;
+                let field = self.fields.find_or_add(raw.node as usize, None, &raw.crossed) as u32;
                 Entry { field, weight: raw.weight, gradient: raw.gradient }
             });
             self.stencils.push(p, entries);

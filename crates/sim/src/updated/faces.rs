@@ -207,7 +207,7 @@ impl Faces {
     pub(super) fn at_rest(scene: &Scene, cracks: &Cracks) -> Self {
         let mut faces = Self {
             cracks: cracks.iter().map(CrackNow::at_rest).collect(),
-            outlines: Outlines::at_rest(scene, Tracer::at_rest),
+            outlines: Outlines::at_rest(scene, |_, place| Tracer::at_rest(place)),
         };
         for id in cracks.ids().filter(|&id| cracks.end(id) == CrackEnd::Mouth) {
             faces.open_mouth(cracks, id, scene.cell_size);

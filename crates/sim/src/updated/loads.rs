@@ -27,7 +27,7 @@ impl Loads {
             let layer = particles.select(scene, &load.selection);
             let particle = |place| match place {
                 ForcePlace::Particle(p) => Some(p),
-                ForcePlace::Outline(place) => nearest(particles, layer.iter().copied(), place),
+                ForcePlace::Outline { place, .. } => nearest(particles, layer.iter().copied(), place),
             };
             let forces = forces_of_load(scene, particles, index)?.into_iter();
             let forces: Vec<(u32, Vector)> = forces.filter_map(|at| Some((particle(at.place)?, at.force))).collect();

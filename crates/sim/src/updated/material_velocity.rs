@@ -87,7 +87,7 @@ impl MaterialVelocity<'_> {
                     continue;
                 }
                 for share in division.pair(side, node_place) {
-                    if let Some(field) = fields.find(node, &share.crossed) {
+                    if let Some(field) = fields.find(node, None, &share.crossed) {
                         add(field, w * share.fraction);
                     }
                 }
