@@ -14,7 +14,7 @@ pub fn solver_preset(preset: SolverPreset) -> (SolverSettings, GrowthSettings) {
                 formulation: Formulation::Auto,
                 on_distortion: OnDistortion::Stop,
                 kernel: Kernel::Bilinear,
-                transfer: Transfer::Apic,
+                transfer: Transfer::Aflip,
                 time_step: None,
                 courant: 0.9,
                 damping: 0.0,

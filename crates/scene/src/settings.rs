@@ -68,6 +68,9 @@ pub enum Transfer {
     Flip(#[cfg_attr(feature = "load", schemars(transform = crate::range::UNIT.bounds()))] f64),
     /// Affine PIC.
     Apic,
+    /// Affine FLIP: the grid's changes of velocity and of its gradient are added to what the particle has, little of
+    /// which fades.
+    Aflip,
     /// Extended PIC of order 2.
     Xpic,
 }

@@ -25,6 +25,7 @@ pub const CASES: &[Case] = &[
     cases::free_flight::FLIGHT,
     cases::free_flight::TURNS,
     cases::cantilever_growth::CASE,
+    cases::transfers::CASE,
 ];
 
 /// The case of a name.

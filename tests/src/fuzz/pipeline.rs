@@ -145,7 +145,7 @@ fn settings(text: &mut String, random: &mut Random, side: f64) {
         ("preset", &["\"standard\"", "\"thesis\""]),
         ("formulation", &["\"total\"", "\"updated\"", "\"auto\""]),
         ("kernel", &["\"bilinear\"", "\"gimp\"", "\"quadratic\"", "\"cubic\""]),
-        ("transfer", &["\"pic\"", "\"apic\"", "\"xpic\"", "{ flip = 0.9 }"]),
+        ("transfer", &["\"pic\"", "\"apic\"", "\"aflip\"", "\"xpic\"", "{ flip = 0.9 }"]),
         ("tip_division", &["\"line_crossing\"", "\"partly_cut\""]),
         ("j_method", &["\"contour\"", "\"domain\""]),
         ("mode_split", &["\"interaction\"", "\"opening_displacement\""]),

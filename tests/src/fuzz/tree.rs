@@ -52,7 +52,7 @@ impl From<serde_json::Value> for Tree {
 }
 
 /// Words that values of text may become: names, keys, choices, paths, and nonsense.
-const WORDS: [&str; 40] = [
+const WORDS: [&str; 41] = [
     "",
     ".",
     "..",
@@ -80,6 +80,7 @@ const WORDS: [&str; 40] = [
     "gimp",
     "pic",
     "apic",
+    "aflip",
     "xpic",
     "left",
     "top",

@@ -36,7 +36,7 @@ pub struct SolverKeys {
     pub on_distortion: Option<OnDistortion>,
     /// Interpolation: `bilinear`, `gimp`, `quadratic` or `cubic`.
     pub kernel: Option<Kernel>,
-    /// Grid to particle transfer (updated formulation): `pic`, `{ flip = 0.95 }`, `apic` or `xpic`.
+    /// Grid to particle transfer (updated formulation): `pic`, `{ flip = 0.95 }`, `apic`, `aflip` or `xpic`.
     pub transfer: Option<Transfer>,
     /// Time step in s, or `"auto"` (default): chosen from the stability limit.
     pub time_step: TimeStep,

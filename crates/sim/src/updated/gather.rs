@@ -24,6 +24,8 @@ pub(super) struct Gathered {
     pub(super) affine: Matrix,
     /// The beginning's velocity, sent to the grid and back once more [m/s] (Hammerquist & Nairn 2017).
     smoothed: Vector,
+    /// What the particle's velocity gains [m/s], with [`Transfer::Aflip`].
+    gain: Vector,
 }
 
 impl Gathered {
@@ -34,10 +36,11 @@ impl Gathered {
 
     /// New velocity of a particle of velocity `v` by a transfer.
     #[inline]
-    pub(super) fn new_velocity(&self, v: Vector, transfer: Transfer) -> Vector {
+    pub(super) fn new_velocity(&self, v: Vector, kept: f64, transfer: Transfer) -> Vector {
         match transfer {
             Transfer::Pic | Transfer::Apic => self.velocity,
             Transfer::Flip(blend) => (v + self.velocity - self.before) * blend + self.velocity * (1.0 - blend),
+            Transfer::Aflip => v * kept + self.gain,
             // v − (I − S S⁺)² v + S a Δt.
             Transfer::Xpic => self.before * 2.0 - self.smoothed + self.velocity - self.before,
         }
@@ -50,18 +53,20 @@ pub(super) struct Wanted {
     pub(super) before: bool,
     affine: bool,
     smoothed: bool,
+    gain: bool,
 }
 
 impl Wanted {
     /// The velocity at the beginning of the step alone.
-    pub(super) const BEFORE: Self = Self { before: true, affine: false, smoothed: false };
+    pub(super) const BEFORE: Self = Self { before: true, affine: false, smoothed: false, gain: false };
 
     /// What a transfer needs.
     pub(super) fn by(transfer: Transfer, kernel: Kernel) -> Self {
         Self {
             before: matches!(transfer, Transfer::Flip(_) | Transfer::Xpic),
-            affine: transfer == Transfer::Apic && kernel != Kernel::Bilinear,
+            affine: (transfer == Transfer::Apic && kernel != Kernel::Bilinear) || transfer == Transfer::Aflip,
             smoothed: transfer == Transfer::Xpic,
+            gain: transfer == Transfer::Aflip,
         }
     }
 }
@@ -154,11 +159,13 @@ impl<'a> FromGrid<'a> {
         let mut g = Gathered::default();
         let x: [f64; W] = first(&stencil.weight[0]);
         let dx: [f64; W] = first(&stencil.gradient[0]);
-        let (ax, ay) = if wanted.affine {
-            (affine_weights(&arm_x, &stencil.weight[0]), affine_weights(&arm_y, &stencil.weight[1]))
-        } else {
-            ([0.0; W], [0.0; W])
+        let (ax, ay) = match wanted.affine {
+            // The affine weights of the bilinear kernel are its gradients.
+            true if W == 2 => (dx, first(&stencil.gradient[1])),
+            true => (affine_weights(&arm_x, &stencil.weight[0]), affine_weights(&arm_y, &stencil.weight[1])),
+            false => ([0.0; W], [0.0; W]),
         };
+        let turning = if wanted.gain { &nodes.gain } else { &nodes.after };
         // The grid has been laid for all stencils.
         let rows = walker.rows(stencil.first, W).unwrap_or_default();
         for b in 0..W {
@@ -174,8 +181,10 @@ impl<'a> FromGrid<'a> {
                     g.before[axis] += wy * along(&nodes.before[axis], at, &x);
                 }
                 if wanted.affine {
-                    g.affine[(axis, 0)] += wy * along(&nodes.after[axis], at, &ax);
-                    g.affine[(axis, 1)] += ay[b] * v;
+                    let t = if wanted.gain { along(&nodes.gain[axis], at, &x) } else { v };
+                    g.gain[axis] += wy * t;
+                    g.affine[(axis, 0)] += wy * along(&turning[axis], at, &ax);
+                    g.affine[(axis, 1)] += ay[b] * t;
                 }
                 if wanted.smoothed {
                     g.smoothed[axis] += wy * along(&nodes.smoothed[axis], at, &x);
@@ -215,13 +224,16 @@ impl<'a> FromGrid<'a> {
                 g.before += nodes.velocity_before(d) * e.weight;
             }
             if wanted.affine {
-                g.affine += v * self.lattice.arm(e, point.position).transpose() * e.weight;
+                let t = if wanted.gain { nodes.gain(d) } else { v };
+                g.gain += t * e.weight;
+                let arm = if W == 2 { e.gradient } else { self.lattice.arm(e, point.position) * e.weight };
+                g.affine += t * arm.transpose();
             }
             if wanted.smoothed {
                 g.smoothed += Vector::new(nodes.smoothed[0][d], nodes.smoothed[1][d]) * e.weight;
             }
         }
-        if wanted.affine {
+        if wanted.affine && W != 2 {
             for axis in 0..2 {
                 g.affine.column_mut(axis).unscale_mut(spread[axis]);
             }

@@ -9,7 +9,7 @@ use super::setup::Setup;
 use crate::SimulationError;
 use crate::boundary::collider::PlacedObstacle;
 use crate::threads::prelude::*;
-use fissure_scene::{Kernel, Matrix, Point};
+use fissure_scene::{Kernel, Matrix, Point, Transfer};
 
 /// Particles that one task takes.
 const CHUNK: usize = 1024;
@@ -146,10 +146,14 @@ fn run<const W: usize>(
             point.elastic_gradient = part.flow(point.elastic_gradient, law);
         }
         if let Some(c) = task.affine.get_mut(k) {
-            // The affine weights of the bilinear kernel are its gradients.
-            *c = if W == 2 { g.gradient } else { g.affine };
+            *c = match settings.transfer {
+                Transfer::Aflip => *c * nodes.kept + g.affine,
+                // The affine weights of the bilinear kernel are its gradients.
+                _ if W == 2 => g.gradient,
+                _ => g.affine,
+            };
         }
-        point.velocity = g.new_velocity(point.velocity, settings.transfer);
+        point.velocity = g.new_velocity(point.velocity, nodes.kept, settings.transfer);
         let mut advection = g.velocity;
         for obstacle in obstacles {
             let before = point.velocity;

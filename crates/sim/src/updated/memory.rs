@@ -24,6 +24,7 @@ impl Updated {
         let settings = &scene.solver;
         let has_cracks = !scene.cracks.is_empty();
         // Velocities that go to the grid once more.
+        let gains = settings.transfer == Transfer::Aflip;
         let sends_back = settings.transfer == Transfer::Xpic || settings.kernel == Kernel::Bilinear;
         let saved = size_of::<MaterialPoint>()
             + if_any(has_affine(scene), size_of::<Matrix>())
@@ -35,7 +36,8 @@ impl Updated {
             + if_any(sends_back, size_of::<Vector>());
         let node = NUMBERS_PER_FIELD * size_of::<f64>()
             + if_any(has_cracks, MARKS_PER_NODE * size_of::<bool>())
-            + if_any(sends_back, size_of::<Vector>());
+            + if_any(sends_back, size_of::<Vector>())
+            + if_any(gains, size_of::<Vector>());
         let divided = kernel::width(settings.kernel).pow(2) * (size_of::<Entry>() + size_of::<Raw>());
         let outlines = amounts.outline_points * size_of::<Tracer>() as f64;
         Need {

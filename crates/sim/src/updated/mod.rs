@@ -18,6 +18,7 @@
 //! | `Nodes` | mass, momentum, force and velocity of fields |
 //! | `Loads`, `Supports`, `Colliders`, `Contacts` | what acts on fields and particles |
 
+mod affine_flip;
 mod colliders;
 mod contact;
 mod cut;
@@ -205,6 +206,9 @@ impl Updated {
         self.external_work += self.colliders.collide_nodes(lattice, middle, nodes);
         if !(self.supports.is_empty() && self.colliders.is_empty()) {
             self.contacts.resolve(nodes, friction, time_step);
+        }
+        if setup.scene.solver.transfer == Transfer::Aflip {
+            nodes.find_gain(affine_flip::kept(setup, time_step));
         }
     }
 

@@ -14,6 +14,11 @@ pub(super) struct Nodes {
     pub(super) after: [Vec<f64>; 2],
     /// The beginning's velocity, sent to the particles and back, for XPIC [m/s]; empty otherwise.
     pub(super) smoothed: [Vec<f64>; 2],
+    /// v⁺ − k v of the velocities v and v⁺ at the beginning and at the end of the step, for affine FLIP [m/s]; empty
+    /// otherwise.
+    pub(super) gain: [Vec<f64>; 2],
+    /// k: what a particle keeps of its velocity and of its gradient in this step, with affine FLIP [–].
+    pub(super) kept: f64,
     /// The particles' new velocities, sent to the grid once more, for the strains of the bilinear kernel [m/s]; empty
     /// otherwise.
     pub(super) remapped: [Vec<f64>; 2],
@@ -28,7 +33,7 @@ impl Nodes {
             values.clear();
             values.resize(fields, 0.0);
         }
-        for values in self.remapped.iter_mut().chain(&mut self.smoothed) {
+        for values in self.remapped.iter_mut().chain(&mut self.smoothed).chain(&mut self.gain) {
             values.clear();
         }
     }
@@ -41,6 +46,21 @@ impl Nodes {
     /// Velocity of a field at the beginning of the step [m/s].
     pub(super) fn velocity_before(&self, field: usize) -> Vector {
         Vector::new(self.before[0][field], self.before[1][field])
+    }
+
+    /// Gain of a field [m/s].
+    pub(super) fn gain(&self, field: usize) -> Vector {
+        Vector::new(self.gain[0][field], self.gain[1][field])
+    }
+
+    /// Finds what particles gain in this step besides what they keep of their own.
+    pub(super) fn find_gain(&mut self, kept: f64) {
+        self.kept = kept;
+        for axis in 0..2 {
+            let change = self.before[axis].iter().zip(&self.after[axis]).map(|(before, after)| after - kept * before);
+            self.gain[axis].clear();
+            self.gain[axis].extend(change);
+        }
     }
 
     /// v = p/m at the beginning, v + Δt f/m at the end (thesis eq. 6), with gravity and a `damping` rate [1/s].

@@ -31,7 +31,7 @@ pub(super) struct Motion {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Points {
     pub(super) point: Vec<MaterialPoint>,
-    /// Affine velocity C_p [1/s]; empty unless the transfer is APIC.
+    /// Affine velocity C_p [1/s]; empty unless the transfer is affine.
     pub(super) affine: Vec<Matrix>,
     /// Plastic part; empty when every material is elastic.
     pub(super) plastic: Vec<PlasticPart>,

@@ -27,7 +27,7 @@ pub(super) fn remapped_velocities(
     let settings = &from.setup.scene.solver;
     let wanted = Wanted::by(settings.transfer, settings.kernel);
     let mut velocities = from.gather_all(&to.points.point, wanted, |point, g| {
-        let v = g.new_velocity(point.velocity, settings.transfer);
+        let v = g.new_velocity(point.velocity, from.nodes.kept, settings.transfer);
         obstacles.iter().fold(v, |v, o| o.resolve(v, point.position))
     });
     supports.prescribe(from.setup, &mut velocities, middle);

@@ -38,7 +38,7 @@ impl Setup {
 
 /// Whether particles carry an affine velocity.
 pub(super) fn has_affine(scene: &Scene) -> bool {
-    scene.solver.transfer == Transfer::Apic
+    matches!(scene.solver.transfer, Transfer::Apic | Transfer::Aflip)
 }
 
 /// Whether particles carry a plastic part.

@@ -14,12 +14,15 @@ struct Formulation {
     loss: f64,
     /// Largest part of the work that is lost in [`work_is_energy`].
     lost_work: f64,
+    /// Largest part of the angular momentum that is lost or gained in [`momenta_are_kept`].
+    spin: f64,
 }
 
-/// Measured: 5.2e-5, 0.2 and 1.1 %.
-const TOTAL: Formulation = Formulation { of: |scene| scene, stress: 1e-4, loss: 0.004, lost_work: 0.015 };
-/// Measured: 1.2 %, 54 and 9 %; its transfers damp what is as short as a few cells.
-const UPDATED: Formulation = Formulation { of: updated, stress: 0.015, loss: 0.6, lost_work: 0.1 };
+/// Measured: 5.2e-5, 0.2 and 1.1 %, round-off.
+const TOTAL: Formulation = Formulation { of: |scene| scene, stress: 1e-4, loss: 0.004, lost_work: 0.015, spin: 1e-11 };
+/// Measured: 1.2 %, 22 and 6.4 %, 3.2e-4; its transfer damps what is as short as a few cells, and particles carry what
+/// the grid does not see.
+const UPDATED: Formulation = Formulation { of: updated, stress: 0.015, loss: 0.25, lost_work: 0.08, spin: 1e-3 };
 
 /// Largest part of the energy that may be gained: what half a step makes of it. Measured: 0.2 %.
 const GAIN: f64 = 0.004;
@@ -105,7 +108,7 @@ fn momenta_are_kept(formulation: &Formulation) {
     let (linear_after, angular_after) = simulation.momenta();
     assert!(largest_stress(&frame) > 1e-4 * YOUNG, "it vibrates");
     assert!((linear_after - linear).norm() < 1e-12 * linear.norm(), "{linear} {linear_after}");
-    assert!((angular_after / angular - 1.0).abs() < 1e-11, "{angular} {angular_after}");
+    assert!((angular_after / angular - 1.0).abs() < formulation.spin, "{angular} {angular_after}");
 }
 
 /// Truth: the first law. A body that vibrates with its crack open gains nothing, and loses no more than is known.

@@ -20,6 +20,7 @@ pub(crate) mod step_load;
 mod stepped_plate;
 pub(crate) mod strip;
 pub(crate) mod three_holes;
+pub(crate) mod transfers;
 
 /// Kinetic energy at rest, as a part of the strain energy: from 1e-8 on, K_I of edge cracks changes by less than 1e-3.
 const REST: f64 = 1e-8;
