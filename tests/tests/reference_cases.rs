@@ -99,7 +99,7 @@ fn step_load() {
 #[test]
 fn moving_crack() {
     let report = coarse("moving-crack", 30.0);
-    worked(&report, [330, 438, 110]);
+    worked(&report, [330, 330, 110]);
     within(&report, "mean J E'/K_I² at 1500 m/s", 0.06);
 }
 
@@ -107,7 +107,7 @@ fn moving_crack() {
 #[test]
 fn crack_motion() {
     let report = coarse("crack-motion", 20.0);
-    worked(&report, [240, 210, 66]);
+    worked(&report, [240, 146, 67]);
     met(&report, "start");
     within(&report, "Δa at 2.4 t_c", 0.1);
     met(&report, "highest speed");
@@ -126,7 +126,7 @@ fn strip() {
 #[test]
 fn impacted_notch() {
     let report = coarse("impacted-notch", 25.0);
-    worked(&report, [687, 783, 201]);
+    worked(&report, [674, 570, 201]);
     met(&report, "mean angle");
     met(&report, "largest |K_I|/K_Ic");
     within(&report, "K_II/K_Ic at the start", 0.02);
@@ -136,7 +136,7 @@ fn impacted_notch() {
 #[test]
 fn branching_plate() {
     let report = coarse("branching-plate", 40.0);
-    worked(&report, [270, 222, 46]);
+    worked(&report, [270, 177, 47]);
     within(&report, "start of growth", 0.015);
     within(&report, "run at 14 µs", 0.08);
     met(&report, "mean speed");
@@ -146,7 +146,7 @@ fn branching_plate() {
 #[test]
 fn kink_angles() {
     let report = coarse("kink-angles", 8.0);
-    worked(&report, [3753, 57, 14]);
+    worked(&report, [3865, 274, 13]);
     within(&report, "angle asked for", 1.2);
     within(&report, "kink of the crack", 1.2);
 }
