@@ -6,7 +6,12 @@
 use fissure_verify::{Options, Report, find};
 
 fn coarse(name: &str, cells: f64) -> Report {
-    let options = Options { cells: Some(cells), ..Options::default() };
+    anywhere(name, cells, 1)
+}
+
+/// At so many places on the grid; every fourth is one of those that people draw.
+fn anywhere(name: &str, cells: f64, places: usize) -> Report {
+    let options = Options { cells: Some(cells), places, ..Options::default() };
     find(name).unwrap().run(&options, &mut |_| ()).unwrap()
 }
 
@@ -42,25 +47,26 @@ fn worked(report: &Report, counts: [u64; 3]) {
 #[test]
 fn center_crack() {
     let report = coarse("center-crack", 8.0);
-    worked(&report, [7944, 0, 0]);
+    worked(&report, [1908, 0, 0]);
     within(&report, "K_I/(σ√πa)", 0.01);
     met(&report, "difference between the tips");
     met(&report, "|K_II|/K_I");
 }
 
-/// Measured 0.7 % and 0.27° (targets 2 % and 1° at 16 cells).
+/// Measured 1.7 % and 0.8° at 45°, where the crack lies on nodes and particles, 0.4 % and 0.2° else (targets 2 % and
+/// 1° at 16 cells).
 #[test]
 fn slanted_crack() {
     let report = coarse("slanted-crack", 8.0);
-    within(&report, "√(K_I²+K_II²)", 0.01);
-    within(&report, "mode angle", 0.5);
+    within(&report, "√(K_I²+K_II²)", 0.02);
+    within(&report, "mode angle", 1.0);
 }
 
 /// Measured 0.030 in K_II, 0.031 in J (targets 0.03 at 12 cells).
 #[test]
 fn closed_crack() {
     let report = coarse("closed-crack", 6.0);
-    worked(&report, [26930, 53860, 0]);
+    worked(&report, [25980, 51960, 0]);
     met(&report, "overlap of the faces");
     within(&report, "K_II/K_II apart", 0.04);
     met(&report, "K_I/K_II apart");
@@ -70,7 +76,7 @@ fn closed_crack() {
 /// Measured 1.9 % and 2.3 % (target 3 % at 8 cells).
 #[test]
 fn double_cantilever() {
-    let report = coarse("double-cantilever", 4.0);
+    let report = anywhere("double-cantilever", 4.0, 2);
     worked(&report, [21696, 0, 0]);
     within(&report, "J, ", 0.022);
     within(&report, "D/P", 0.027);
@@ -81,7 +87,7 @@ fn double_cantilever() {
 /// (targets 3 % at 8 cells).
 #[test]
 fn crack_pairs() {
-    let report = coarse("crack-pairs", 4.0);
+    let report = anywhere("crack-pairs", 4.0, 1);
     within(&report, "K_I/(σ√πa), stacked", 0.012);
     within(&report, "K_I/(σ√πa), collinear, gap 1 a", 0.01);
     met(&report, "K_II/(σ√πa), stacked");
@@ -91,7 +97,7 @@ fn crack_pairs() {
 #[test]
 fn step_load() {
     let report = coarse("step-load", 20.0);
-    worked(&report, [360, 360, 0]);
+    worked(&report, [90, 90, 0]);
     within(&report, "rms error of K_I", 2.4);
 }
 
@@ -99,7 +105,7 @@ fn step_load() {
 #[test]
 fn moving_crack() {
     let report = coarse("moving-crack", 30.0);
-    worked(&report, [330, 330, 110]);
+    worked(&report, [150, 204, 55]);
     within(&report, "mean J E'/K_I² at 1500 m/s", 0.06);
 }
 
@@ -107,7 +113,7 @@ fn moving_crack() {
 #[test]
 fn crack_motion() {
     let report = coarse("crack-motion", 20.0);
-    worked(&report, [240, 146, 67]);
+    worked(&report, [120, 105, 33]);
     met(&report, "start");
     within(&report, "Δa at 2.4 t_c", 0.1);
     met(&report, "highest speed");
@@ -117,7 +123,7 @@ fn crack_motion() {
 #[test]
 fn strip() {
     let report = coarse("strip", 40.0);
-    worked(&report, [1000, 2000, 0]);
+    worked(&report, [240, 480, 0]);
     within(&report, "first peak of K_I", 0.05);
     within(&report, "middle of the first peak", 0.06);
 }
@@ -126,7 +132,7 @@ fn strip() {
 #[test]
 fn impacted_notch() {
     let report = coarse("impacted-notch", 25.0);
-    worked(&report, [674, 570, 201]);
+    worked(&report, [687, 783, 201]);
     met(&report, "mean angle");
     met(&report, "largest |K_I|/K_Ic");
     within(&report, "K_II/K_Ic at the start", 0.02);
@@ -136,7 +142,7 @@ fn impacted_notch() {
 #[test]
 fn branching_plate() {
     let report = coarse("branching-plate", 40.0);
-    worked(&report, [270, 177, 47]);
+    worked(&report, [270, 222, 46]);
     within(&report, "start of growth", 0.015);
     within(&report, "run at 14 µs", 0.08);
     met(&report, "mean speed");
@@ -146,7 +152,7 @@ fn branching_plate() {
 #[test]
 fn kink_angles() {
     let report = coarse("kink-angles", 8.0);
-    worked(&report, [3865, 274, 13]);
+    worked(&report, [3774, 50, 13]);
     within(&report, "angle asked for", 1.2);
     within(&report, "kink of the crack", 1.2);
 }

@@ -55,9 +55,9 @@ pub(crate) enum Command {
     /// Compute problems with known solutions and print what comes out beside what should.
     ///
     /// A missed target is printed as such and is no failure.
-    #[command(
-        after_help = "Examples:\n  fissure verify edge-crack   one case\n  fissure verify all          the full table"
-    )]
+    #[command(after_help = "Examples:\n  fissure verify edge-crack               one case\n  \
+                      fissure verify edge-crack --places 32   wherever it lies on the grid\n  \
+                      fissure verify all                      the full table")]
     Verify(VerifyArguments),
     /// Print the JSON schema of scene files, for editors.
     #[command(after_help = "Example:\n  fissure schema > scene.schema.json")]
@@ -228,12 +228,18 @@ pub(crate) struct VerifyArguments {
     /// Run all cases.
     #[arg(long)]
     pub(crate) all: bool,
-    /// Resolution: cells per characteristic length, which `--list` names for each case [default: that of the targets].
+    /// Resolution: cells per characteristic length, which `--list` names for each case [default: that of the
+    /// targets, at several places what `--list` names].
     #[arg(long, value_name = "N", value_parser = parse_cells)]
     pub(crate) cells: Option<f64>,
-    /// Put the tip at 16 places within a cell in every variant of the cases that vary it.
-    #[arg(long)]
-    pub(crate) all_offsets: bool,
+    /// Compute each case at so many places on the grid, and print the worst, the mean and the standard deviation. The
+    /// first is as the case is drawn; the others are moved within a cell, mirrored, turned, at spacings up to 10 %
+    /// apart. Of all cases, long ones get a quarter.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u16).range(1..))]
+    pub(crate) places: u16,
+    /// Which places these are.
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub(crate) seed: u64,
     /// Print Markdown.
     #[arg(long)]
     pub(crate) markdown: bool,

@@ -70,7 +70,8 @@
 //!   stay.
 //! - How right it is: `fissure verify`, with closed forms and published numbers.
 //!
-//! Not promised: the same bytes from another version of the program.
+//! Not promised: that bodies or far parts of one body touch in the total formulation (crack faces and colliders do),
+//! and the same bytes from another version of the program.
 //!
 //! # Features
 //!
@@ -80,7 +81,6 @@
 #[doc(hidden)]
 pub mod bench;
 mod boundary;
-mod contact;
 mod crack;
 mod error;
 mod faces;

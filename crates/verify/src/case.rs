@@ -1,17 +1,25 @@
 //! What a reference case is and how it is run.
 
+use crate::family;
 use crate::report::{Progress, Report, Tally};
 use fissure_sim::SimulationError;
 
 /// How a case is run.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// Resolution, in cells per characteristic length of the case (its documentation says which); none: that of its
-    /// targets.
+    /// targets, or [`Case::family_cells`] at several places.
     pub cells: Option<f64>,
-    /// Measure at 16 places of the tip within a cell for every variant, where the case varies the place at all; without
-    /// it only the variants whose target says so get all 16, the others 4.
-    pub all_offsets: bool,
+    /// At how many places on the grid the case is computed. The first is as it is drawn.
+    pub places: usize,
+    /// Which places the others are.
+    pub seed: u64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { cells: None, places: 1, seed: 1 }
+    }
 }
 
 impl Options {
@@ -20,6 +28,9 @@ impl Options {
         self.cells.unwrap_or(standard)
     }
 }
+
+/// Computes a case at one place, which the tally knows.
+pub(crate) type Compute = fn(&Options, &mut Tally<'_>) -> Result<(), SimulationError>;
 
 /// A fracture or mechanics problem whose solution is known.
 #[derive(Clone, Copy)]
@@ -30,7 +41,11 @@ pub struct Case {
     pub about: &'static str,
     /// What [`Options::cells`] counts, and its standard value.
     pub cells: (&'static str, f64),
-    compute: fn(&Options, &mut Tally<'_>) -> Result<(), SimulationError>,
+    /// The resolution at several places; coarser than the standard one where that takes too long.
+    pub family_cells: f64,
+    /// Whether one place takes so long that a table of all cases has fewer of it.
+    pub is_long: bool,
+    compute: Compute,
 }
 
 impl std::fmt::Debug for Case {
@@ -44,19 +59,36 @@ impl Case {
         name: &'static str,
         about: &'static str,
         cells: (&'static str, f64),
-        compute: fn(&Options, &mut Tally<'_>) -> Result<(), SimulationError>,
+        compute: Compute,
     ) -> Self {
-        Self { name, about, cells, compute }
+        Self { name, about, cells, family_cells: cells.1, is_long: false, compute }
+    }
+
+    /// At several places, computed with so many cells.
+    pub(crate) const fn family_cells(self, family_cells: f64) -> Self {
+        Self { family_cells, ..self }
+    }
+
+    /// A case of which a table has a quarter of the places of others.
+    pub(crate) const fn long(self) -> Self {
+        Self { is_long: true, ..self }
     }
 
     /// Computes the case and compares it with its reference.
     ///
     /// # Errors
-    /// When the solver fails. A missed target is no error: the report says so.
+    /// When the solver fails at the one place, or at all. A missed target is no error: the report says so.
     pub fn run(&self, options: &Options, progress: Progress<'_>) -> Result<Report, SimulationError> {
         let started = std::time::Instant::now();
-        let mut tally = Tally::new(progress);
-        (self.compute)(options, &mut tally)?;
-        Ok(tally.finish(self.name, self.about, started.elapsed().as_secs_f64()))
+        let standard = if options.places > 1 { self.family_cells } else { self.cells.1 };
+        let cells = options.cells_or(standard);
+        let report = family::run(self.compute, &Options { cells: Some(cells), ..*options }, progress)?;
+        Ok(Report {
+            name: self.name.into(),
+            about: self.about.into(),
+            cells: (cells, self.cells.0),
+            seconds: started.elapsed().as_secs_f64(),
+            ..report
+        })
     }
 }

@@ -6,6 +6,21 @@
 //!
 //! A [`Case`] is run with [`Options`] and gives a [`Report`] of [`Row`]s; [`text`] and [`markdown`] print it.
 //!
+//! # How to write a case
+//!
+//! A case is a file in `cases`, named in `list.rs`. It builds its scene as it is easiest to think of, with a `Problem`,
+//! and knows nothing of where the scene will lie on the grid: `Tally::set_up` mirrors it, turns it, moves it within a
+//! cell and changes its spacing, and what is read through the simulation that comes back is in the frame of the case
+//! again, K_II and kink angles with the signs they have there. `Tally::rest` brings it to rest, `Tally::run` follows it
+//! step by step.
+//!
+//! - Geometry is written down exactly, so that the reference holds wherever it lies. Round numbers are best: they are
+//!   what people draw, and the first place is the one that is written down.
+//! - Edges are selected by their side, or by the stretch of the outline that is meant, never by a box of nodes.
+//! - A row has the same name at every place. It is one number of one run: worst, mean and deviation come by themselves.
+//! - What takes longer than some ten seconds at 32 places says so: `family_cells` for a coarser grid, `long` for fewer.
+//! - Its coarse version goes into `tests/tests/reference_cases.rs`.
+//!
 //! ```
 //! use fissure_scene::SolverPreset;
 //! use fissure_verify::EdgeCrack;
@@ -18,8 +33,11 @@
 
 mod case;
 mod cases;
+mod family;
 mod interpolate;
 mod list;
+mod placed;
+mod placement;
 mod problem;
 mod report;
 mod table;
@@ -27,5 +45,5 @@ mod table;
 pub use case::{Case, Options};
 pub use cases::edge_crack::{EdgeCrack, EdgeCrackResult};
 pub use list::{CASES, find};
-pub use report::{Expected, Progress, Report, Row};
+pub use report::{Expected, Progress, Report, Row, Spread};
 pub use table::{markdown, text};

@@ -1,8 +1,8 @@
 //! The one place where scenes of cases are put together.
 
 use fissure_scene::{
-    Body, BoxSide, Crack, Curve, FrameSettings, GrowthSettings, Load, LoadKind, Material, OutputSettings, PlaneState,
-    Point, Region, Scene, Selection, SolverPreset, Support, UpAxis, Vector, solver_preset,
+    Body, BoxSide, Crack, Curve, FrameSettings, GrowthSettings, Load, LoadKind, Material, OutlineStretch,
+    OutputSettings, PlaneState, Point, Region, Scene, Selection, SolverPreset, Support, UpAxis, Vector, solver_preset,
 };
 
 /// A scene in the making: one body on one lattice, standard settings, growth off, nothing acts.
@@ -47,6 +47,12 @@ pub(crate) fn disc(radius: f64) -> Region {
         if k == 128 { Point::new(-radius, 0.0) } else { Point::new(radius * cosine, radius * sine) }
     };
     Region { exterior: (0..256).map(corner).collect(), holes: Vec::new() }
+}
+
+/// A straight stretch of the outline of the only body, the material to its left [m].
+pub(crate) fn stretch(from: (f64, f64), to: (f64, f64)) -> Selection {
+    let [from, to] = [from, to].map(|(x, y)| Point::new(x, y));
+    Selection::Outline(vec![OutlineStretch { body: 0, from, to }])
 }
 
 impl Problem {

@@ -1,10 +1,18 @@
 //! What a case found, beside what it should have found.
 
-use fissure_sim::Simulation;
+use crate::placed::{Moment, Placed};
+use crate::placement::Placement;
+use crate::problem::Problem;
+use fissure_sim::SimulationError;
 use std::ops::ControlFlow;
 
 /// Told now and then what is being computed.
-pub type Progress<'a> = &'a mut dyn FnMut(&str);
+pub type Progress<'a> = &'a mut (dyn FnMut(&str) + Send);
+
+/// Kinetic energy at rest, as a part of the strain energy: from 1e-8 on, K_I of edge cracks changes by less than 1e-3.
+const REST: f64 = 1e-8;
+/// Steps to rest at most; long beams need the most, 12000.
+const MOST_STEPS: u64 = 20_000;
 
 /// What a computed number is held against.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,6 +50,21 @@ pub struct Row {
     pub computed: f64,
     /// What it is held against.
     pub expected: Expected,
+    /// Where the case was computed at several places: how this came out at all of them. The row is that of the worst.
+    pub spread: Option<Spread>,
+}
+
+/// One quantity at many places on the grid.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Spread {
+    /// How many.
+    pub places: usize,
+    /// Mean of the error as [`Row::error`] gives it, of the value where there is none.
+    pub mean: f64,
+    /// Standard deviation of the same.
+    pub deviation: f64,
+    /// The worst place, in words.
+    pub worst: String,
 }
 
 impl Row {
@@ -68,12 +91,14 @@ impl Row {
 }
 
 /// What running a case gave.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Report {
     /// Name of the case.
     pub name: String,
     /// What it compares.
     pub about: String,
+    /// Resolution: how many cells, and along what.
+    pub cells: (f64, &'static str),
     /// The comparison.
     pub rows: Vec<Row>,
     /// Particles of the largest run.
@@ -100,17 +125,21 @@ impl Report {
 /// What a case writes into while it runs.
 pub(crate) struct Tally<'a> {
     progress: Progress<'a>,
-    rows: Vec<Row>,
-    notes: Vec<String>,
-    particles: usize,
-    steps: u64,
-    looks: u64,
-    recuts: u64,
+    placement: Placement,
+    report: Report,
+    /// Runs that did not come to rest.
+    unrested: u64,
 }
 
 impl<'a> Tally<'a> {
-    pub(crate) fn new(progress: Progress<'a>) -> Self {
-        Self { progress, rows: Vec::new(), notes: Vec::new(), particles: 0, steps: 0, looks: 0, recuts: 0 }
+    /// For a run of the case at one place.
+    pub(crate) fn new(placement: Placement, progress: Progress<'a>) -> Self {
+        Self { progress, placement, report: Report::default(), unrested: 0 }
+    }
+
+    /// Whether the case is computed as it is drawn: what need not be done at every place is done there.
+    pub(crate) fn is_natural(&self) -> bool {
+        self.placement == Placement::NATURAL
     }
 
     /// Says what is being computed now.
@@ -118,32 +147,76 @@ impl<'a> Tally<'a> {
         (self.progress)(what);
     }
 
-    /// Counts a run that was brought to rest: it took `steps`.
+    /// The simulation of a problem at the place of this run.
+    pub(crate) fn set_up(&self, problem: &Problem) -> Result<Placed, SimulationError> {
+        Placed::new(&problem.scene, self.placement)
+    }
+
+    /// Sets a problem up and brings it to rest.
+    pub(crate) fn rest(&mut self, problem: &Problem) -> Result<Placed, SimulationError> {
+        let mut placed = self.set_up(problem)?;
+        self.relax(&mut placed)?;
+        Ok(placed)
+    }
+
+    /// Brings a simulation to rest. Returns the number of steps.
+    pub(crate) fn relax(&mut self, placed: &mut Placed) -> Result<u64, SimulationError> {
+        self.relax_to(REST, placed)
+    }
+
+    /// Brings a simulation to rest, up to a kinetic energy given as a part of the strain energy.
+    pub(crate) fn relax_to(&mut self, tolerance: f64, placed: &mut Placed) -> Result<u64, SimulationError> {
+        let steps = placed.relax(tolerance, MOST_STEPS)?;
+        self.unrested += u64::from(steps >= MOST_STEPS);
+        self.count(placed.particles(), steps);
+        Ok(steps)
+    }
+
+    /// Counts a run that took `steps`.
     pub(crate) fn count(&mut self, particles: usize, steps: u64) {
-        self.particles = self.particles.max(particles);
-        self.steps += steps;
+        self.report.particles = self.report.particles.max(particles);
+        self.report.steps += steps;
     }
 
     /// Runs to the end of the frames; `sample` looks at the state after each step, and ends the run by breaking. It is
     /// also given the time to which what was measured at the tips belongs [s]: the beginning of the step.
     pub(crate) fn run(
         &mut self,
-        simulation: &mut Simulation,
-        mut sample: impl FnMut(&Simulation, f64) -> ControlFlow<()>,
-    ) -> Result<(), fissure_sim::SimulationError> {
-        let mut measured = simulation.time();
+        placed: &mut Placed,
+        mut sample: impl FnMut(Moment<'_>, f64) -> ControlFlow<()>,
+    ) -> Result<(), SimulationError> {
+        let mut measured = placed.now().time();
         let mut goes_on = true;
-        while goes_on && !simulation.is_finished() {
-            goes_on = simulation.advance_observed(&mut |now, _| {
+        while goes_on && !placed.is_finished() {
+            goes_on = placed.advance_observed(&mut |now| {
                 let flow = sample(now, measured);
                 measured = now.time();
                 flow
             })?;
         }
-        self.count(simulation.particles(), simulation.steps());
-        self.looks += simulation.counts().looks;
-        self.recuts += simulation.counts().recuts;
+        self.count_run(placed);
         Ok(())
+    }
+
+    /// Runs to the end of the frames; `sample` looks at the state after each frame.
+    pub(crate) fn run_frames(
+        &mut self,
+        placed: &mut Placed,
+        mut sample: impl FnMut(Moment<'_>),
+    ) -> Result<(), SimulationError> {
+        while !placed.is_finished() {
+            placed.advance()?;
+            sample(placed.now());
+        }
+        self.count_run(placed);
+        Ok(())
+    }
+
+    /// Counts all that a run has done besides coming to rest.
+    pub(crate) fn count_run(&mut self, placed: &Placed) {
+        self.count(placed.particles(), placed.steps());
+        self.report.looks += placed.counts().looks;
+        self.report.recuts += placed.counts().recuts;
     }
 
     /// Adds a number with a reference and a target for its relative error.
@@ -156,7 +229,7 @@ impl<'a> Tally<'a> {
         within: impl Into<Option<f64>>,
     ) {
         let expected = Expected::Relative { reference, within: within.into() };
-        self.rows.push(Row { quantity: quantity.into(), unit, computed, expected });
+        self.push(quantity.into(), unit, computed, expected);
     }
 
     /// Adds a number with a reference and a target for the difference.
@@ -169,21 +242,28 @@ impl<'a> Tally<'a> {
         within: impl Into<Option<f64>>,
     ) {
         let expected = Expected::Absolute { reference, within: within.into() };
-        self.rows.push(Row { quantity: quantity.into(), unit, computed, expected });
+        self.push(quantity.into(), unit, computed, expected);
     }
 
     /// Adds a number with bounds.
     pub(crate) fn bound(&mut self, quantity: impl Into<String>, unit: &'static str, computed: f64, expected: Expected) {
-        self.rows.push(Row { quantity: quantity.into(), unit, computed, expected });
+        self.push(quantity.into(), unit, computed, expected);
+    }
+
+    fn push(&mut self, quantity: String, unit: &'static str, computed: f64, expected: Expected) {
+        self.report.rows.push(Row { quantity, unit, computed, expected, spread: None });
     }
 
     /// Adds a remark.
     pub(crate) fn note(&mut self, note: impl Into<String>) {
-        self.notes.push(note.into());
+        self.report.notes.push(note.into());
     }
 
-    pub(crate) fn finish(self, name: &str, about: &str, seconds: f64) -> Report {
-        let Self { rows, notes, particles, steps, looks, recuts, .. } = self;
-        Report { name: name.into(), about: about.into(), rows, particles, steps, looks, recuts, seconds, notes }
+    /// What was found.
+    pub(crate) fn finish(mut self) -> Report {
+        if self.unrested > 0 {
+            self.bound("runs that did not come to rest", "", self.unrested as f64, Expected::AtMost(0.0));
+        }
+        self.report
     }
 }

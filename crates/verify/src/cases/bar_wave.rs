@@ -5,14 +5,12 @@
 //! and the particle speed σ/(ρc) (closed form); reflected from the fixed end, the stress doubles. Means are taken ten
 //! cells away from fronts and ends. Cells are counted along the wavelength of the standing wave.
 
-use super::REST;
 use crate::case::{Case, Options};
 use crate::problem::{LINEAR_YOUNG, Problem, linear_material, rectangle};
 use crate::report::Tally;
 use fissure_scene::{BoxSide, Curve, Frame, LoadKind, PlaneState, Selection, Vector};
-use fissure_sim::{Elastic, Simulation, SimulationError};
+use fissure_sim::{Elastic, SimulationError};
 use std::f64::consts::FRAC_PI_2;
-use std::ops::ControlFlow;
 
 pub(crate) const CASE: Case = Case::new(
     "bar-wave",
@@ -45,27 +43,23 @@ fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationErr
     tally.say("travelling");
     // While the wave has gone 0.8 lengths, then while its reflection has gone half the way back.
     let time = 1.5 * LENGTH / speed;
-    let mut simulation = Simulation::new(&bar(LENGTH, Curve::default()).until(time, 15).scene)?;
-    let mut front = f64::NAN;
-    while !simulation.is_finished() {
-        simulation.advance(&mut |_| ControlFlow::Continue(()))?;
-        let frame = simulation.frame();
+    let mut placed = tally.set_up(&bar(LENGTH, Curve::default()).until(time, 15))?;
+    let particle_speed = TRACTION / (material.density * speed);
+    let (mut behind, mut front) = ((f64::NAN, f64::NAN), f64::NAN);
+    tally.run_frames(&mut placed, |now| {
+        let frame = now.frame();
         if frame.number == 8 {
-            let behind = [0.2 * LENGTH + 10.0, LENGTH - 10.0];
-            let (stress, velocity) = means(&frame, behind);
-            tally.relative("stress behind the front", "Pa", stress, TRACTION, 0.01);
-            let particle_speed = TRACTION / (material.density * speed);
-            tally.relative("particle speed behind the front", "m/s", velocity, particle_speed, 0.01);
+            behind = means(&frame, [0.2 * LENGTH + 10.0, LENGTH - 10.0]);
             // The front is where the momentum says it is: all of it moves at the particle speed.
-            let p = &frame.particles;
-            let moving: f64 = p.velocity.iter().map(|v| v.x).sum::<f64>() / particle_speed * 0.25 / 4.0;
-            front = moving / frame.time;
+            let mean = frame.particles.velocity.iter().map(|v| v.x).sum::<f64>() / frame.particles.len() as f64;
+            front = LENGTH * mean / particle_speed / frame.time;
         }
-    }
+    })?;
+    tally.relative("stress behind the front", "Pa", behind.0, TRACTION, 0.01);
+    tally.relative("particle speed behind the front", "m/s", behind.1, particle_speed, 0.01);
     tally.relative("speed of the front", "m/s", front, speed, 0.01);
-    let (stress, _) = means(&simulation.frame(), [10.0, 0.5 * LENGTH - 10.0]);
+    let (stress, _) = means(&placed.now().frame(), [10.0, 0.5 * LENGTH - 10.0]);
     tally.relative("stress behind the reflected front", "Pa", stress, 2.0 * TRACTION, 0.01);
-    tally.count(simulation.particles(), simulation.steps());
     Ok(())
 }
 
@@ -74,14 +68,11 @@ fn standing(length: f64, speed: f64, tally: &mut Tally<'_>) -> Result<(), Simula
     tally.say(&format!("standing, {length} cells"));
     let period = 4.0 * length / speed;
     let release = Curve { points: vec![(0.0, 1.0), (0.05 * period, 0.0)] };
-    let mut simulation = Simulation::new(&bar(length, release).until(4.0 * period, 400).scene)?;
-    let steps = simulation.relax(REST, super::MOST_STEPS)?;
-    tally.count(simulation.particles(), steps);
+    let mut placed = tally.rest(&bar(length, release).until(4.0 * period, 400))?;
     let mut crossings = Vec::new();
     let mut last: Option<(f64, f64)> = None;
-    while !simulation.is_finished() {
-        simulation.advance(&mut |_| ControlFlow::Continue(()))?;
-        let p = simulation.frame().particles;
+    tally.run_frames(&mut placed, |now| {
+        let p = now.frame().particles;
         let stretch = |(rest, now): (&fissure_scene::Point, &fissure_scene::Point)| {
             (FRAC_PI_2 * rest.x / length).sin() * (now.x - rest.x)
         };
@@ -89,11 +80,10 @@ fn standing(length: f64, speed: f64, tally: &mut Tally<'_>) -> Result<(), Simula
         if let Some((time, before)) = last
             && (before < 0.0) != (amplitude < 0.0)
         {
-            crossings.push(time + (simulation.time() - time) * before / (before - amplitude));
+            crossings.push(time + (now.time() - time) * before / (before - amplitude));
         }
-        last = Some((simulation.time(), amplitude));
-    }
-    tally.count(simulation.particles(), simulation.steps());
+        last = Some((now.time(), amplitude));
+    })?;
     let found = match crossings.as_slice() {
         [first, .., last] => 2.0 * length * (crossings.len() - 1) as f64 / (last - first),
         _ => f64::NAN,

@@ -5,14 +5,12 @@
 //! Reference: ωL√(ρ/E) of an own finite element solution, ν = 0.3 (Euler and Bernoulli's beam is 0.7 to 2.8 % stiffer).
 //! Cells are counted through the depth.
 
-use super::REST;
 use crate::case::{Case, Options};
 use crate::problem::{LINEAR_YOUNG, Problem, linear_material, rectangle};
 use crate::report::Tally;
 use fissure_scene::{BoxSide, Curve, LoadKind, PlaneState, Selection, Vector};
-use fissure_sim::{Simulation, SimulationError};
+use fissure_sim::SimulationError;
 use std::f64::consts::{PI, TAU};
-use std::ops::ControlFlow;
 
 pub(crate) const CASE: Case =
     Case::new("cantilever", "first bending frequency of a cantilever", ("through the depth", 8.0), compute);
@@ -47,24 +45,20 @@ fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationErr
                 .support(left, [Some(0.0), Some(0.0)])
                 .load(right, LoadKind::Traction(force), release)
                 .until(3.0 * period, 240);
-            let mut simulation = Simulation::new(&problem.scene)?;
-            let steps = simulation.relax(REST, super::MOST_STEPS)?;
-            tally.count(simulation.particles(), steps);
+            let mut placed = tally.rest(&problem)?;
             let mut crossings = Vec::new();
             let mut last: Option<(f64, f64)> = None;
-            while !simulation.is_finished() {
-                simulation.advance(&mut |_| ControlFlow::Continue(()))?;
-                let p = simulation.frame().particles;
+            tally.run_frames(&mut placed, |now| {
+                let p = now.frame().particles;
                 let bent: f64 =
                     p.rest.iter().zip(&p.position).map(|(rest, now)| shape(rest.x / length) * (now.y - rest.y)).sum();
                 if let Some((time, before)) = last
                     && (before < 0.0) != (bent < 0.0)
                 {
-                    crossings.push(time + (simulation.time() - time) * before / (before - bent));
+                    crossings.push(time + (now.time() - time) * before / (before - bent));
                 }
-                last = Some((simulation.time(), bent));
-            }
-            tally.count(simulation.particles(), simulation.steps());
+                last = Some((now.time(), bent));
+            })?;
             let found = match crossings.as_slice() {
                 [first, .., last] => PI * (crossings.len() - 1) as f64 / (last - first) / slow,
                 _ => f64::NAN,

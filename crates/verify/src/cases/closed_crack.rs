@@ -13,7 +13,7 @@ use crate::case::{Case, Options};
 use crate::problem::{Problem, linear_material, rectangle};
 use crate::report::Tally;
 use fissure_scene::{BoxSide, Curve, LoadKind, PlaneState, Selection, Vector};
-use fissure_sim::{Elastic, Simulation, SimulationError};
+use fissure_sim::{Elastic, SimulationError};
 use std::ops::ControlFlow;
 
 pub(crate) const CASE: Case = Case::new(
@@ -21,7 +21,8 @@ pub(crate) const CASE: Case = Case::new(
     "K_II, K_I and J of a crack pressed together and sheared, with and without friction",
     ("along half the crack", 12.0),
     compute,
-);
+)
+.family_cells(6.0);
 
 /// τ [Pa].
 const SHEAR: f64 = 1e3;
@@ -48,7 +49,7 @@ fn problem(degrees: f64, cells: f64, faces: Faces) -> Problem {
     let width = 4.0 * cells;
     let crossing = width / elastic().shear_wave_speed();
     let (sine, cosine) = degrees.to_radians().sin_cos();
-    let (x, y) = (2.0 * cells + 0.125, 2.0 * cells + 0.26);
+    let (x, y) = (2.0 * cells, 2.0 * cells);
     let (dx, dy) = (cells * cosine, cells * sine);
     let square = rectangle((0.0, 0.0), (width, width));
     let rise = RISE * crossing;
@@ -98,11 +99,12 @@ struct Rest {
 }
 
 fn rest(problem: &Problem, tally: &mut Tally<'_>) -> Result<Rest, SimulationError> {
-    let mut simulation = Simulation::new(&problem.scene)?;
-    tally.run(&mut simulation, |_, _| ControlFlow::Continue(()))?;
-    let tips = simulation.tips();
+    let mut placed = tally.set_up(problem)?;
+    tally.run(&mut placed, |_, _| ControlFlow::Continue(()))?;
+    let frame = placed.now().frame();
+    let tips = &frame.tips;
     let tips = [0, 1].map(|t| [tips[t].mode_1, tips[t].mode_2, tips[t].j_integral]);
-    let faces = &simulation.frame().cracks[0];
+    let faces = &frame.cracks[0];
     let along = (faces.rest[faces.rest.len() - 1] - faces.rest[0]).normalize();
     let opening = faces.above.iter().zip(&faces.below).map(|(above, below)| along.perp(&(above - below)));
     Ok(Rest { tips, overlap: opening.fold(0.0, |most, opening| most.max(-opening)) })

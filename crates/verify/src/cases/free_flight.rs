@@ -12,14 +12,16 @@ use crate::case::{Case, Options};
 use crate::problem::{Problem, disc, material};
 use crate::report::{Expected, Tally};
 use fissure_scene::{InitialVelocity, PlaneState, Point, Selection, Vector};
-use fissure_sim::{Elastic, Simulation, SimulationError};
+use fissure_sim::{Elastic, SimulationError};
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
 
 pub(crate) const FLIGHT: Case =
     Case::new("free-flight", "what a flying disc with a slit keeps", ("over the radius", 10.0), flight);
 pub(crate) const TURNS: Case =
-    Case::new("ten-turns", "what a disc with a slit keeps over ten turns", ("over the radius", 10.0), turns);
+    Case::new("ten-turns", "what a disc with a slit keeps over ten turns", ("over the radius", 10.0), turns)
+        .family_cells(5.0)
+        .long();
 
 /// Speed of flight or of the rim as a part of c_d.
 const SPEED: f64 = 0.01;
@@ -45,10 +47,10 @@ fn flight(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationErro
     let cells = options.cells_or(FLIGHT.cells.1).round();
     let (problem, speed) = moving(cells, [0.8 * SPEED, 0.6 * SPEED], 0.0, true);
     // About 2000 steps of half a cell.
-    let mut simulation = Simulation::new(&problem.until(1000.0 / (cells * speed), 10).scene)?;
-    let (before, energy) = (simulation.momenta(), simulation.energies());
-    tally.run(&mut simulation, |_, _| ControlFlow::Continue(()))?;
-    let (after, now) = (simulation.momenta(), simulation.energies());
+    let mut placed = tally.set_up(&problem.until(1000.0 / (cells * speed), 10))?;
+    let (before, energy) = (placed.now().momenta(), placed.now().energies());
+    tally.run(&mut placed, |_, _| ControlFlow::Continue(()))?;
+    let (after, now) = (placed.now().momenta(), placed.now().energies());
     let change = (after.0 - before.0).norm() / before.0.norm();
     tally.bound("change of momentum, relative", "", change, Expected::AtMost(1e-11));
     let change = (now.kinetic + now.strain) / energy.kinetic - 1.0;
@@ -67,11 +69,11 @@ fn turns(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationError
         let within = |limit: f64| (!contact).then_some(limit);
         let (problem, speed) = moving(cells, [0.0; 2], SPEED, contact);
         let turn = TAU / (SPEED * speed);
-        let mut simulation = Simulation::new(&problem.until(10.0 * turn, 10).scene)?;
-        let before = simulation.momenta();
+        let mut placed = tally.set_up(&problem.until(10.0 * turn, 10))?;
+        let before = placed.now().momenta();
         let (mut energies, mut strains) = ([0.0; 2], [0.0; 2]);
         let (mut counts, mut momentum) = ([0.0; 2], 0.0_f64);
-        tally.run(&mut simulation, |now, _| {
+        tally.run(&mut placed, |now, _| {
             let slot = usize::from(now.time() > turn);
             if slot == 0 || now.time() > 9.0 * turn {
                 let e = now.energies();
@@ -83,7 +85,7 @@ fn turns(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationError
             ControlFlow::Continue(())
         })?;
         let of_last = |sums: [f64; 2]| sums[1] / counts[1] / (sums[0] / counts[0]) - 1.0;
-        let turned = simulation.momenta().1 / before.1 - 1.0;
+        let turned = placed.now().momenta().1 / before.1 - 1.0;
         tally.absolute(format!("change of angular momentum, relative, {of}"), "", turned, 0.0, within(1e-10));
         // The mass times the rim's speed: what a whole disc moving so fast would have.
         let scale = PI * 1000.0 * SPEED * speed;

@@ -12,10 +12,10 @@
 
 use crate::case::{Case, Options};
 use crate::interpolate::linear;
-use crate::problem::{Problem, material, rectangle};
+use crate::problem::{Problem, material, rectangle, stretch};
 use crate::report::{Expected, Tally};
 use fissure_scene::{BoxSide, Curve, PlaneState, Point, Selection, Support};
-use fissure_sim::{Simulation, SimulationError};
+use fissure_sim::SimulationError;
 use std::ops::ControlFlow;
 
 pub(crate) const CASE: Case = Case::new(
@@ -23,7 +23,9 @@ pub(crate) const CASE: Case = Case::new(
     "start and direction of a crack from a notch beside an impact",
     ("over the strip below the notch", 50.0),
     compute,
-);
+)
+.family_cells(25.0)
+.long();
 
 /// Height of the driven strip [m].
 const STRIP: f64 = 0.025;
@@ -36,11 +38,10 @@ const CLOSED: [(f64, f64); 3] = [(12.0, -50.15), (13.2, -61.59), (14.4, -69.03)]
 /// Length of the path that is judged [m].
 const RUN: f64 = 0.025;
 
-/// The half plate and the tip of its notch [m], which lies off the lattice by parts of a cell.
+/// The half plate and the tip of its notch [m], which as drawn lies off the grid by parts of a cell.
 fn plate(cell_size: f64, toughness: f64) -> (Problem, Point) {
-    let [along, across] = [0.125, 0.51];
-    let tip = Point::new(0.05 + along * cell_size, STRIP + (across - 0.5) * cell_size);
-    let driven = Selection::Region(rectangle((-0.25 * cell_size, 0.0), (0.25 * cell_size, STRIP - cell_size)));
+    let tip = Point::new(0.05 + 0.125 * cell_size, STRIP + 0.01 * cell_size);
+    let driven = stretch((0.0, STRIP - cell_size), (0.0, 0.0));
     let mut problem = Problem::new(
         "impacted-notch",
         rectangle((0.0, 0.0), (0.1, 0.1)),
@@ -63,9 +64,9 @@ fn at_rest(cell_size: f64, contact: bool, tally: &mut Tally<'_>) -> Result<[Vec<
     let (problem, _) = plate(cell_size, 1e30);
     let mut problem = problem.until(15e-6, 15);
     problem.scene.solver.crack_contact = contact;
-    let mut simulation = Simulation::new(&problem.scene)?;
+    let mut placed = tally.set_up(&problem)?;
     let mut curves = [Vec::new(), Vec::new()];
-    tally.run(&mut simulation, |now, time| {
+    tally.run(&mut placed, |now, time| {
         let tip = &now.tips()[0];
         curves[0].push((1e6 * time, 1e-6 * tip.mode_1));
         curves[1].push((1e6 * time, 1e-6 * tip.mode_2));
@@ -95,10 +96,10 @@ fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationErr
     let (problem, tip) = plate(cell_size, TOUGHNESS);
     let (x, y) = (tip.x, tip.y);
     let problem = problem.growing().until(80e-6, 80);
-    let mut simulation = Simulation::new(&problem.scene)?;
+    let mut placed = tally.set_up(&problem)?;
     let (mut start, mut opening, mut shear, mut path) = (f64::NAN, 0.0_f64, 0.0, Vec::new());
     let notch = x;
-    tally.run(&mut simulation, |now, _| {
+    tally.run(&mut placed, |now, _| {
         let tip = &now.tips()[0];
         let grown = tip.length - notch;
         if grown <= 0.0 {
@@ -112,7 +113,7 @@ fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationErr
         path.push((grown, tip.position));
         if grown >= RUN || !tip.state.is_live() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })?;
-    let cracks = simulation.frame().cracks;
+    let cracks = placed.now().frame().cracks;
     let points = &cracks[0].rest;
     let end = points[points.len() - 1];
     let angle = (end.y - y).atan2(end.x - x).to_degrees();

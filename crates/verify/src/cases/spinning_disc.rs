@@ -9,16 +9,16 @@ use crate::case::{Case, Options};
 use crate::problem::{Problem, disc, material};
 use crate::report::{Expected, Tally};
 use fissure_scene::{InitialVelocity, PlaneState, Point, Selection, Vector};
-use fissure_sim::{Elastic, Simulation, SimulationError};
+use fissure_sim::{Elastic, SimulationError};
 use std::f64::consts::TAU;
-use std::ops::ControlFlow;
 
 pub(crate) const CASE: Case = Case::new(
     "spinning-disc",
     "stress in a spinning disc and its angular momentum",
     ("over the radius", 20.0),
     compute,
-);
+)
+.family_cells(10.0);
 
 const POISSON: f64 = 0.3;
 const DENSITY: f64 = 1000.0;
@@ -40,13 +40,12 @@ fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationErr
             angular_velocity: spin,
             center: Point::origin(),
         });
-        let mut simulation = Simulation::new(&problem.scene)?;
-        let before = simulation.momenta().1;
+        let mut placed = tally.set_up(&problem)?;
+        let before = placed.now().momenta().1;
         let (mut sum, mut weights, mut reference) = (0.0, 0.0, 0.0);
-        while !simulation.is_finished() {
-            simulation.advance(&mut |_| ControlFlow::Continue(()))?;
-            let window = 1.0 - (TAU * simulation.time() / time).cos();
-            let particles = simulation.frame().particles;
+        tally.run_frames(&mut placed, |now| {
+            let window = 1.0 - (TAU * now.time() / time).cos();
+            let particles = now.frame().particles;
             let (mut mean, mut exact, mut count) = (0.0, 0.0, 0.0);
             for (place, stress) in particles.rest.iter().zip(&particles.cauchy_stress) {
                 let square = place.coords.norm_squared();
@@ -59,10 +58,9 @@ fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationErr
             sum += window * mean / count;
             weights += window;
             reference = exact / count;
-        }
-        tally.count(simulation.particles(), simulation.steps());
+        })?;
         tally.relative(format!("mean of σ_r + σ_t within a/2, {name}"), "Pa", sum / weights, reference, 0.02);
-        let turned = (simulation.momenta().1 / before - 1.0).abs();
+        let turned = (placed.now().momenta().1 / before - 1.0).abs();
         tally.bound(format!("change of angular momentum, relative, {name}"), "", turned, Expected::AtMost(1e-11));
     }
     Ok(())

@@ -17,7 +17,7 @@ use fissure_scene::{
     BoxSide, Collider, ColliderShape, Contact, Curve, Formulation, Frame, InitialVelocity, Kernel, LoadKind,
     PlaneState, Point, Pose, Selection, Transfer, Vector,
 };
-use fissure_sim::{Elastic, Simulation, SimulationError};
+use fissure_sim::{Elastic, SimulationError};
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
@@ -104,9 +104,9 @@ fn standing(transfer: Option<Transfer>, cells: f64, tally: &mut Tally<'_>) -> Re
     }
     // Energies of the solver are half a step apart and ripple: means over the first and over the last period.
     let period = cells / speed;
-    let mut simulation = Simulation::new(&problem.until(5.0 * period, 5).scene)?;
+    let mut placed = tally.set_up(&problem.until(5.0 * period, 5))?;
     let (mut sums, mut counts) = ([0.0; 2], [0.0; 2]);
-    tally.run(&mut simulation, |now, _| {
+    tally.run(&mut placed, |now, _| {
         let last = now.time() > 4.0 * period;
         if last || now.time() < period {
             let energies = now.energies();
@@ -125,9 +125,9 @@ fn front(name: &str, transfer: Option<Transfer>, tally: &mut Tally<'_>) -> Resul
     let pull = Selection::Edge { side: BoxSide::Right, bodies: None };
     let load = LoadKind::Traction(Vector::new(TRACTION, 0.0));
     let problem = updated(bar("front", LENGTH), transfer).load(pull, load, Curve::default());
-    let mut simulation = Simulation::new(&problem.until(0.8 * LENGTH / wave_speed(), 1).scene)?;
-    tally.run(&mut simulation, |_, _| ControlFlow::Continue(()))?;
-    let noise = noise(&simulation.frame(), [0.2 * LENGTH + 10.0, LENGTH - 10.0]);
+    let mut placed = tally.set_up(&problem.until(0.8 * LENGTH / wave_speed(), 1))?;
+    tally.run(&mut placed, |_, _| ControlFlow::Continue(()))?;
+    let noise = noise(&placed.now().frame(), [0.2 * LENGTH + 10.0, LENGTH - 10.0]);
     tally.absolute(format!("noise of stress behind a front, {name}"), "", noise, 0.0, of_default(name, 0.06));
     Ok(())
 }
@@ -150,10 +150,10 @@ fn spin(name: &str, transfer: Option<Transfer>, tally: &mut Tally<'_>) -> Result
         angular_velocity: rate,
         center: Point::new(5.0, 5.0),
     });
-    let mut simulation = Simulation::new(&problem.until(0.25 * TAU / rate, 4).scene)?;
-    let before = simulation.momenta().1;
-    tally.run(&mut simulation, |_, _| ControlFlow::Continue(()))?;
-    let lost = 1.0 - simulation.momenta().1 / before;
+    let mut placed = tally.set_up(&problem.until(0.25 * TAU / rate, 4))?;
+    let before = placed.now().momenta().1;
+    tally.run(&mut placed, |_, _| ControlFlow::Continue(()))?;
+    let lost = 1.0 - placed.now().momenta().1 / before;
     let quantity = format!("angular momentum lost in a quarter turn, {name}");
     tally.absolute(quantity, "", lost, 0.0, of_default(name, 2e-3));
     Ok(())
@@ -173,10 +173,10 @@ fn throw(name: &str, transfer: Option<Transfer>, tally: &mut Tally<'_>) -> Resul
     for normal in [Vector::new(1.0, 0.0), Vector::new(0.0, 1.0)] {
         problem.scene.colliders.push(wall(normal));
     }
-    let mut simulation = Simulation::new(&problem.until(0.2, 20).scene)?;
-    let before = simulation.energies().kinetic;
-    tally.run(&mut simulation, |_, _| ControlFlow::Continue(()))?;
-    let held = (simulation.energies().kinetic + simulation.energies().strain) / before;
+    let mut placed = tally.set_up(&problem.until(0.2, 20))?;
+    let before = placed.now().energies().kinetic;
+    tally.run(&mut placed, |_, _| ControlFlow::Continue(()))?;
+    let held = (placed.now().energies().kinetic + placed.now().energies().strain) / before;
     tally.bound(format!("energy after a throw into a corner, by that before, {name}"), "", held, Expected::AtMost(1.0));
     Ok(())
 }
