@@ -77,7 +77,7 @@ fn closed_crack() {
 #[test]
 fn double_cantilever() {
     let report = anywhere("double-cantilever", 4.0, 2);
-    worked(&report, [21696, 0, 0]);
+    worked(&report, [92580, 0, 0]);
     within(&report, "J, ", 0.022);
     within(&report, "D/P", 0.027);
     met(&report, "|K_II|/K_I");
@@ -105,7 +105,7 @@ fn step_load() {
 #[test]
 fn moving_crack() {
     let report = coarse("moving-crack", 30.0);
-    worked(&report, [150, 204, 55]);
+    worked(&report, [150, 150, 55]);
     within(&report, "mean J E'/K_I² at 1500 m/s", 0.06);
 }
 
@@ -113,7 +113,7 @@ fn moving_crack() {
 #[test]
 fn crack_motion() {
     let report = coarse("crack-motion", 20.0);
-    worked(&report, [120, 105, 33]);
+    worked(&report, [120, 73, 34]);
     met(&report, "start");
     within(&report, "Δa at 2.4 t_c", 0.1);
     met(&report, "highest speed");
@@ -132,7 +132,7 @@ fn strip() {
 #[test]
 fn impacted_notch() {
     let report = coarse("impacted-notch", 25.0);
-    worked(&report, [687, 783, 201]);
+    worked(&report, [673, 569, 201]);
     met(&report, "mean angle");
     met(&report, "largest |K_I|/K_Ic");
     within(&report, "K_II/K_Ic at the start", 0.02);
@@ -142,7 +142,7 @@ fn impacted_notch() {
 #[test]
 fn branching_plate() {
     let report = coarse("branching-plate", 40.0);
-    worked(&report, [270, 222, 46]);
+    worked(&report, [270, 177, 48]);
     within(&report, "start of growth", 0.015);
     within(&report, "run at 14 µs", 0.08);
     met(&report, "mean speed");
@@ -152,7 +152,7 @@ fn branching_plate() {
 #[test]
 fn kink_angles() {
     let report = coarse("kink-angles", 8.0);
-    worked(&report, [3774, 50, 13]);
+    worked(&report, [3794, 132, 9]);
     within(&report, "angle asked for", 1.2);
     within(&report, "kink of the crack", 1.2);
 }

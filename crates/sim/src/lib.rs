@@ -70,8 +70,7 @@
 //!   stay.
 //! - How right it is: `fissure verify`, with closed forms and published numbers.
 //!
-//! Not promised: that bodies or far parts of one body touch in the total formulation (crack faces and colliders do),
-//! and the same bytes from another version of the program.
+//! Not promised: the same bytes from another version of the program.
 //!
 //! # Features
 //!
@@ -81,6 +80,7 @@
 #[doc(hidden)]
 pub mod bench;
 mod boundary;
+mod contact;
 mod crack;
 mod error;
 mod faces;

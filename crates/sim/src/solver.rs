@@ -43,6 +43,13 @@ pub(crate) trait Solver: Snapshot + Observed + std::fmt::Debug + Send {
     /// As [`Solver::sliding`], to let them.
     fn sliding_mut(&mut self) -> Option<&mut dyn SlidingTips>;
 
+    /// A run of steps begins, to the next frame or part of the way: what is remembered to save work is found anew, so
+    /// that a run that goes on from here gives the same.
+    fn begin_run(&mut self);
+
+    /// Whether surfaces have touched in the last step.
+    fn is_touching(&self) -> bool;
+
     /// Sets all velocities to zero.
     fn stop(&mut self);
 

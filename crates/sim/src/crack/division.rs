@@ -11,7 +11,7 @@
 //! product rule, ∇(b w) = b ∇w + w ∇b. The jump then ends at the tip. Where ties hold the two sides of a node together
 //! until the tip has passed it, nothing is shared: the pair is split as if the crack went on straight ahead.
 
-use crate::crack::crossing::{NetCrossing, Side, crossing};
+use crate::crack::crossing::{Meeting, Segment, Side, meeting};
 use fissure_plane::{Point, Vector, orientation};
 use fissure_scene::TipDivision;
 use rustc_hash::FxHashMap;
@@ -103,6 +103,24 @@ struct Line {
     of: Vec<u32>,
     /// Whether it has a continuation beyond a junction.
     has_junction: bool,
+}
+
+impl Line {
+    /// What the way from `particle` to `node` meets of those of `segments` (line, segment) whose kind `counts`.
+    fn meeting(
+        &self,
+        segments: &[(u32, u32)],
+        particle: Point,
+        node: Point,
+        counts: impl Fn(SegmentKind) -> bool,
+    ) -> Meeting {
+        let counting = segments.iter().filter(|s| counts(self.kinds[s.1 as usize]));
+        let segment = |&(_, number): &(u32, u32)| {
+            let (a, b) = self.segments[number as usize];
+            Segment { number, a, b }
+        };
+        meeting(particle, node, counting.map(segment))
+    }
 }
 
 /// What a segment of a prepared line stands for.
@@ -210,13 +228,23 @@ impl Division {
     /// Calls `visit` with (crack, segment of it) for every segment that the line from `particle` to `node` crosses; a
     /// continuation counts as the segment it carries on.
     pub(crate) fn for_each_crossed(&self, particle: Point, node: Point, mut visit: impl FnMut(u32, usize)) {
-        for &(line, segment) in self.bucket(particle) {
-            let line = &self.lines[line as usize];
-            let (a, b) = line.segments[segment as usize];
-            if !apart(particle, node, a, b) && crossing(particle, node, a, b).is_some() {
+        for segments in self.bucket(particle).chunk_by(|s, t| s.0 == t.0) {
+            let line = &self.lines[segments[0].0 as usize];
+            for segment in line.meeting(segments, particle, node, |_| true).crossed {
                 visit(line.crack, line.of[segment as usize] as usize);
             }
         }
+    }
+
+    /// Whether a crack that `counts` parts two particles. One that lies exactly on a crack is a hair above it, as in a
+    /// pair with a node.
+    pub(crate) fn parts(&self, first: Point, second: Point, counts: impl Fn(u32) -> bool) -> bool {
+        let cracks = self.bucket(first).chunk_by(|s, t| s.0 == t.0);
+        let lines = cracks.map(|segments| (&self.lines[segments[0].0 as usize], segments));
+        lines.filter(|(line, _)| counts(line.crack)).any(|(line, segments)| {
+            let Meeting { side, at_node, .. } = line.meeting(segments, first, second, |_| true);
+            if at_node { side == Some(Side::Below) } else { side.is_some() }
+        })
     }
 
     /// What the line from `particle` to `node` crosses.
@@ -340,16 +368,6 @@ struct PairCut {
     gradient: Vector,
 }
 
-/// Whether the bounding boxes of the segments `p`–`q` and `a`–`b` are disjoint. Asked before the exact test, because
-/// most segments in the neighbourhood of a particle are far from its line to a node.
-#[inline]
-fn apart(p: Point, q: Point, a: Point, b: Point) -> bool {
-    p.x.max(q.x) < a.x.min(b.x)
-        || p.x.min(q.x) > a.x.max(b.x)
-        || p.y.max(q.y) < a.y.min(b.y)
-        || p.y.min(q.y) > a.y.max(b.y)
-}
-
 /// The share b at a distance `behind` its middle, and its slope: the integral of a hat of half width `width` (0: a
 /// step). Particles stand `width` apart, so their samples of the slope always add up to the same, and each changes
 /// continuously as the tip moves.
@@ -373,25 +391,13 @@ fn divide(
     domain: f64,
     crossed: &[u32],
 ) -> Option<PairCut> {
-    let mut net = NetCrossing::default();
-    let mut crosses_real = false;
-    for &(_, segment) in segments {
-        let kind = line.kinds[segment as usize];
-        if let SegmentKind::BeyondJunction(other) = kind
-            && !crossed.contains(&other)
-        {
-            continue;
-        }
-        let (a, b) = line.segments[segment as usize];
-        if apart(particle, node, a, b) {
-            continue;
-        }
-        if let Some(found) = crossing(particle, node, a, b) {
-            net.add(found);
-            crosses_real |= kind != SegmentKind::AheadOfTip;
-        }
-    }
-    let side = net.side()?;
+    let counts = |kind: SegmentKind| match kind {
+        SegmentKind::BeyondJunction(other) => crossed.contains(&other),
+        SegmentKind::Real | SegmentKind::AheadOfTip => true,
+    };
+    let met = line.meeting(segments, particle, node, counts);
+    let side = met.side?;
+    let crosses_real = met.crossed.iter().any(|&segment| line.kinds[segment as usize] != SegmentKind::AheadOfTip);
     for tip in &line.tips {
         let behind = -(particle - tip.position).dot(&tip.ahead);
         let beside = (particle - tip.position).perp(&tip.ahead).abs();
@@ -474,9 +480,9 @@ mod tests {
         ) {
             let mut expected = CrossedSet::new();
             for line in &lines {
-                let mut net = NetCrossing::default();
-                line.points.windows(2).filter_map(|w| crossing(particle, node, w[0], w[1])).for_each(|c| net.add(c));
-                expected.extend(net.side().map(|side| (line.crack, side)));
+                let numbered = line.points.windows(2).enumerate();
+                let all = numbered.map(|(k, w)| Segment { number: k as u32, a: w[0], b: w[1] });
+                expected.extend(meeting(particle, node, all).side.map(|side| (line.crack, side)));
             }
             let found = division(&lines, TipDivision::LineCrossing, TipCut::PLAIN).crossed(particle, node);
             prop_assert_eq!(found, expected);

@@ -1,7 +1,6 @@
 //! Which fragment each particle belongs to.
 
 use crate::crack::Crack;
-use crate::crack::crossing::Side;
 use crate::crack::division::{CrackLine, Division, LineEnd, TipCut};
 use crate::particles::Particles;
 use fissure_scene::{CrackEnd, End, TipDivision};
@@ -39,13 +38,10 @@ pub(crate) fn split(particles: &Particles, cracks: &[Crack], cell_size: f64, num
         for step in [[1, 0], [0, 1]] {
             let place = particles.place[p];
             let Some(q) = particles.at([place[0] + step[0], place[1] + step[1]]) else { continue };
-            // A particle exactly on a crack belongs to its upper side; as a node it would be beyond the crack from
-            // either side.
-            // Nor does a crack cut another body beside it.
-            let is_own = |&(crack, _): &(u32, Side)| cracks[crack as usize].body == particles.body[p];
-            let crossed =
-                |from: usize, to: usize| division.crossed(particles.rest[from], particles.rest[to]).iter().any(is_own);
-            if particles.body[p] == particles.body[q] && !(crossed(p, q) && crossed(q, p)) {
+            // A crack does not cut another body beside it.
+            let is_own = |crack: u32| cracks[crack as usize].body == particles.body[p];
+            let is_parted = division.parts(particles.rest[p], particles.rest[q], is_own);
+            if particles.body[p] == particles.body[q] && !is_parted {
                 let (a, b) = (root(&mut parent, p), root(&mut parent, q));
                 // The lower number is the root, so a fragment is known by its first particle.
                 parent[a.max(b)] = a.min(b);

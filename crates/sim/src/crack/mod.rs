@@ -85,6 +85,16 @@ pub(crate) fn chord_start(points: &[Point], end: End, over: f64) -> Point {
     at(n - 1)
 }
 
+/// The direction to the left of a polyline at its point number `k`, at a vertex midway between those of both segments:
+/// on the left of both, however sharp the turn. Unit vector; zero where nothing has a length.
+pub(crate) fn left_at(points: &[Point], k: usize) -> Vector {
+    let along = |from: usize| (points[from + 1] - points[from]).try_normalize(0.0).unwrap_or_default();
+    let before = if k > 0 { along(k - 1) } else { Vector::zeros() };
+    let after = if k + 1 < points.len() { along(k) } else { Vector::zeros() };
+    let tangent = (before + after).try_normalize(0.0).unwrap_or_default();
+    Vector::new(-tangent.y, tangent.x)
+}
+
 impl Crack {
     /// The crack of a scene at its beginning.
     fn drawn(scene: &Scene, crack: &fissure_scene::Crack) -> Self {

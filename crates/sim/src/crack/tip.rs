@@ -16,8 +16,8 @@ pub(crate) struct Tip {
     pub(crate) guide: Option<GuideWalk>,
     /// How far the tip is ahead of what the speed limit allows [m]; it may grow when this is not positive.
     pub(crate) ahead_of_limit: f64,
-    /// Steps since it grew last.
-    pub(crate) steps_at_rest: u32,
+    /// Time since it grew last [s].
+    pub(crate) time_at_rest: f64,
     /// Crack length added since the tip divided last; infinite before it ever did [m].
     pub(crate) since_division: f64,
     /// Steps until it is measured again.
@@ -29,7 +29,7 @@ pub(crate) struct Tip {
     /// What was measured last.
     pub(crate) assessment: Assessment,
     /// Energy that the tip has taken out of the body beyond the cost of its growth [J/m], never negative. It pays for
-    /// growth to come, but at most for a small part of a cell.
+    /// growth to come.
     pub(crate) balance: f64,
     /// Direction of growth asked for by the stress, averaged over the last moments; at rest, not normalised. Zero:
     /// nothing known.
@@ -43,13 +43,13 @@ impl Tip {
             state: TipState::Resting,
             guide,
             ahead_of_limit: 0.0,
-            steps_at_rest: 0,
+            time_at_rest: 0.0,
             since_division: f64::INFINITY,
             steps_to_look: 0,
             grown: 0.0,
             run_at_frame: 0.0,
             assessment: Assessment::default(),
-            balance: f64::INFINITY,
+            balance: 0.0,
             heading: Vector::zeros(),
         }
     }
@@ -67,12 +67,15 @@ impl Tip {
     pub(super) fn check(&self) -> Fits {
         let m = &self.assessment;
         let what = "a tip";
-        saved::finite(what, [&self.ahead_of_limit, &self.grown, &self.run_at_frame])?;
+        saved::finite(
+            what,
+            [&self.ahead_of_limit, &self.grown, &self.run_at_frame, &self.time_at_rest, &self.balance],
+        )?;
         saved::finite(what, [&m.j_integral, &m.mode_1, &m.mode_2, &m.kink_angle, &m.equivalent, &m.released])?;
         saved::finite(what, [&m.fracture_toughness, &m.contour_radius])?;
         saved::finite(what, &self.heading)?;
-        // Both are infinite before the tip has grown.
-        saved::ensure(!self.since_division.is_nan() && !self.balance.is_nan(), "the balance of a tip")?;
+        // Infinite before the tip has divided.
+        saved::ensure(!self.since_division.is_nan(), "the division of a tip")?;
         self.guide.as_ref().map_or(Ok(()), GuideWalk::check)
     }
 
@@ -81,7 +84,7 @@ impl Tip {
         self.grown += length;
         self.since_division += length;
         self.ahead_of_limit += length;
-        self.steps_at_rest = 0;
+        self.time_at_rest = 0.0;
         if let Some(guide) = &mut self.guide {
             guide.walk(length);
         }

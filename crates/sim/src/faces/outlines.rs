@@ -95,6 +95,11 @@ impl<V: Vertex> Outlines<V> {
         self.rings.iter().flatten()
     }
 
+    /// A vertex of a ring.
+    pub(crate) fn vertex(&self, ring: usize, vertex: usize) -> &V {
+        &self.rings[ring][vertex]
+    }
+
     /// The rings.
     pub(crate) fn rings(&self) -> impl Iterator<Item = &[V]> {
         self.rings.iter().map(Vec::as_slice)

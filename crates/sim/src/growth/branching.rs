@@ -7,6 +7,7 @@
 use super::advance::LAST_LIGAMENT;
 use super::barrier::first_barrier;
 use super::heading::way;
+use super::load::critical_release;
 use crate::crack::assessment::Assessment;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::material::elastic::Elastic;
@@ -31,8 +32,7 @@ pub(crate) fn branches(
     let tip = cracks.tip(id)?;
     let from = cracks.position(id);
     let body = &scene.bodies[cracks.of(id).body as usize];
-    let modulus = elastic[body.material_at(from)].effective_modulus;
-    let enough = branching.release_ratio * assessed.fracture_toughness * assessed.fracture_toughness / modulus;
+    let enough = branching.release_ratio * critical_release(cracks, id, assessed, scene, elastic);
     let follows_exactly = tip.guide.as_ref().is_some_and(|g| g.strength() >= 1.0);
     if follows_exactly || assessed.j_integral < enough || tip.since_division < branching.spacing {
         return None;

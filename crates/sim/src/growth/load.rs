@@ -6,6 +6,7 @@ use super::seeking::{is_varied, toughness_at};
 use crate::crack::DIRECTION_LENGTH;
 use crate::crack::assessment::Assessment;
 use crate::crack::cracks::{Cracks, TipId};
+use crate::material::elastic::Elastic;
 use crate::tip::gauge::Reading;
 use fissure_scene::{Scene, Vector};
 
@@ -27,7 +28,8 @@ pub(crate) fn assess(reading: &Reading, scene: &Scene) -> Assessment {
     }
 }
 
-/// Whether a tip grows at `time` [s], given what was measured. `slides`: it can also go a part of an increment.
+/// Whether a tip begins to grow at `time` [s], or jumps on by an increment, given what was measured. `slides`: it can
+/// also go a part of an increment.
 pub(crate) fn wants_to_grow(
     cracks: &Cracks,
     id: TipId,
@@ -80,14 +82,34 @@ pub(crate) enum Cost {
     Energy(f64),
 }
 
-/// What growth costs a tip. In energy: of what is released now, the part that is needed. K_eq² goes with the energy
-/// that is released, whatever the mode and the direction, so at K_eq = K_c this is all of it, and in mode I it is
-/// always K_c²/E'.
-pub(crate) fn cost(cracks: &Cracks, id: TipId, assessed: &Assessment, scene: &Scene, time: f64) -> Cost {
+/// What growth costs a tip. In energy: G_c at least, which is what a kink takes along which the hoop stress is highest,
+/// because its own tip opens without shear. A tip that has to go another way is sheared, and at K_eq = K_c there needs
+/// more, (K_I² + K_II²)/E'. Where nothing can be measured, close to a ring maybe, it is G_c.
+pub(crate) fn cost(
+    cracks: &Cracks,
+    id: TipId,
+    assessed: &Assessment,
+    scene: &Scene,
+    elastic: &[Elastic],
+    time: f64,
+) -> Cost {
     let tip = cracks.tip(id);
     if let Some(due) = tip.and_then(|t| t.guide.as_ref()?.due(t.grown, time)) {
         return Cost::Scheduled(due.length);
     }
     let part = assessed.fracture_toughness / equivalent(cracks, id, assessed, scene);
-    Cost::Energy(assessed.released * part * part)
+    // The larger of a NaN and a number is the number.
+    Cost::Energy((assessed.released * part * part).max(critical_release(cracks, id, assessed, scene, elastic)))
+}
+
+/// G_c = K_c²/E' of what lies ahead of a tip [J/m²].
+pub(crate) fn critical_release(
+    cracks: &Cracks,
+    id: TipId,
+    assessed: &Assessment,
+    scene: &Scene,
+    elastic: &[Elastic],
+) -> f64 {
+    let material = scene.bodies[cracks.of(id).body as usize].material_at(cracks.position(id));
+    assessed.fracture_toughness * assessed.fracture_toughness / elastic[material].effective_modulus
 }

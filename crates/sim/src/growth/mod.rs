@@ -21,5 +21,5 @@ pub(crate) use advance::Advance;
 pub(crate) use branching::branches;
 pub(crate) use heading::heading;
 pub(crate) use increment::next_increment;
-pub(crate) use load::{Cost, assess, cost, toughness_ahead, wants_to_grow};
+pub(crate) use load::{Cost, assess, cost, critical_release, toughness_ahead, wants_to_grow};
 pub(crate) use speed::speed_limit;

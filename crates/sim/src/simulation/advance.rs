@@ -34,7 +34,9 @@ impl Simulation {
 
     pub(super) fn largest_time_step(&self) -> f64 {
         let solver = &self.scene.solver;
-        let contact = !self.scene.colliders.is_empty() || (solver.crack_contact && !self.state.cracks.is_empty());
+        let contact = !self.scene.colliders.is_empty()
+            || (solver.crack_contact && !self.state.cracks.is_empty())
+            || self.solver.is_touching();
         let grows = self.scene.growth.enabled && self.state.cracks.iter().any(|c| c.live_tips() > 0);
         let most = match (grows, contact) {
             (true, _) => GROWTH_COURANT,
@@ -88,8 +90,10 @@ impl Simulation {
         frame_steps: &mut u64,
         watch: &mut dyn FnMut(&Self, &Progress) -> ControlFlow<()>,
     ) -> Result<bool, SimulationError> {
+        self.solver.begin_run();
         self.stable_time_step = self.solver.stable_time_step();
         self.check_time_step()?;
+        let was_touching = self.solver.is_touching();
         let start = self.state.time;
         let steps = ((next - start) / self.largest_time_step()).ceil().max(1.0) as u64;
         let time_step = (next - start) / steps as f64;
@@ -116,7 +120,8 @@ impl Simulation {
             if watch(self, &progress).is_break() {
                 return Ok(false);
             }
-            if !is_last && step.is_multiple_of(STEPS_BETWEEN_LIMITS) && self.limit_has_moved() {
+            let begins_to_touch = !was_touching && self.solver.is_touching();
+            if !is_last && step.is_multiple_of(STEPS_BETWEEN_LIMITS) && (begins_to_touch || self.limit_has_moved()) {
                 return Ok(true);
             }
         }

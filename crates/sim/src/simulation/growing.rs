@@ -6,7 +6,7 @@ use crate::crack::Crack;
 use crate::crack::assessment::Assessment;
 use crate::crack::cracks::TipId;
 use crate::crack::tip::Tip;
-use crate::growth::{self, Advance, Cost};
+use crate::growth::{self, Advance};
 use crate::solver::Observed;
 use crate::tip::gauge::Gauge;
 use fissure_scene::{CrackEnd, End, Point, TipState, Vector};
@@ -18,18 +18,15 @@ const MOST_INCREMENTS_PER_STEP: usize = 4;
 /// Part of an increment that a tip takes at once to give it its direction.
 const FIRST_PART: f64 = 1e-3;
 
-/// The most energy that a tip may keep for later, as the length that it pays for, in cells. What the lattice releases
-/// per length varies within a cell: in one part of it a tip takes a little too much, in the next too little.
-const BALANCE_CELLS: f64 = 0.05;
+/// What a tip that waits may save up of the way that its speed limit allows, beyond that of the step, in cells. What
+/// the lattice releases varies within a cell, and a tip runs through it now faster, now more slowly.
+const SAVED_WAY: f64 = 0.2;
 
-/// A tip stays where it is rather than move by less than this, in cells.
-const LEAST_SLIDE: f64 = 1e-12;
-
-/// Halvings of an increment in search of what a tip can pay: down to round-off, or scenes of another size would part.
-const HALVINGS: u32 = 54;
-
-/// A growing tip that has not moved for so many steps is at rest.
-const ARREST_STEPS: u32 = 50;
+/// A growing tip that has not moved for so many times that a wave takes for a cell runs no more: it goes on when what
+/// is measured says so ...
+const STANDS_STILL: f64 = 8.0;
+/// ... and after so many it is at rest.
+const ARRESTS: f64 = 25.0;
 
 /// A resting tip whose K_eq is below this part of the toughness ...
 const FAR_FROM_GROWTH: f64 = 0.7;
@@ -78,61 +75,78 @@ impl Simulation {
             }
         }
         let time = state.time + time_step;
-        for (&id, &m) in live.iter().zip(&assessed) {
-            self.pay_drag(id);
+        for (&id, m) in live.iter().zip(&assessed) {
+            self.settle_account(id, m);
             self.grow(id, m, time, time_step);
         }
         Ok(())
     }
 
-    /// What drag has taken counts as taken by the tip.
-    fn pay_drag(&mut self, id: TipId) {
-        let Some(sliding) = self.solver.sliding_mut() else { return };
-        let energy = sliding.take_drag(id);
-        self.state.crack_energy += energy;
-        if let Some(tip) = self.state.cracks.tip_mut(id) {
-            tip.balance += energy;
-        }
-    }
-
     /// Lets one tip grow as far as the energy balance and the speed limit allow within a step that ends at `time`.
-    fn grow(&mut self, id: TipId, first: Assessment, time: f64, time_step: f64) {
+    fn grow(&mut self, id: TipId, assessed: &Assessment, time: f64, time_step: f64) {
         let may_run = growth::speed_limit(&self.state.cracks, id, &self.scene, &self.elastic, time) * time_step;
-        if let Some(tip) = self.state.cracks.tip_mut(id) {
-            // A tip that waits may save up the way of one step and no more; it shall not leap later.
-            tip.ahead_of_limit = (tip.ahead_of_limit - may_run).max(-may_run);
-        }
-        let mut assessed = first;
+        let Some(tip) = self.state.cracks.tip_mut(id) else { return };
+        // What a tip that waits saves up is bounded; it shall not leap later.
+        let most_saved = may_run + SAVED_WAY * self.scene.cell_size;
+        tip.ahead_of_limit = (tip.ahead_of_limit - may_run).max(-most_saved);
+        tip.time_at_rest += time_step;
+        let runs = self.runs(id);
+        let assessed = &mut { *assessed };
         for increment in 0..MOST_INCREMENTS_PER_STEP {
+            if increment > 0 {
+                let toughness = growth::toughness_ahead(&self.state.cracks, id, assessed, &self.scene);
+                assessed.fracture_toughness = toughness;
+            }
             let cracks = &self.state.cracks;
             let Some(tip) = cracks.tip(id) else { return };
-            let held = may_run <= 0.0 || tip.ahead_of_limit > 0.0;
-            if held || !growth::wants_to_grow(cracks, id, &assessed, &self.scene, time, self.solver.sliding().is_some())
-            {
-                if increment == 0 {
-                    self.rest(id, held);
-                }
+            if may_run <= 0.0 || tip.ahead_of_limit > 0.0 {
+                // Held by its limit alone, a tip does not come to rest.
+                self.forget_rest(id);
                 return;
             }
+            let slides = self.solver.sliding().is_some();
+            if !runs && !growth::wants_to_grow(cracks, id, assessed, &self.scene, time, slides) {
+                break;
+            }
             if cracks.left_of_increment(id).is_none() {
-                if let Some(branches) = growth::branches(cracks, id, &assessed, &self.scene, &self.elastic) {
-                    self.divide(id, branches, &assessed);
+                if let Some(branches) = growth::branches(cracks, id, assessed, &self.scene, &self.elastic) {
+                    self.divide(id, branches, assessed);
                     return;
                 }
-                let Some(advance) = growth::next_increment(cracks, id, &assessed, &self.scene, time) else { return };
-                self.begin_increment(id, &advance, &assessed);
+                let Some(advance) = growth::next_increment(cracks, id, assessed, &self.scene, time) else { return };
+                self.begin_increment(id, &advance, assessed);
                 if self.state.cracks.end(id) != CrackEnd::Tip {
                     return;
                 }
+            } else if let Some(tip) = self.state.cracks.tip_mut(id) {
+                // It may have come to rest on its way.
+                tip.state = TipState::Growing;
             }
-            if !self.slide(id, &assessed, time) {
-                if increment == 0 {
-                    self.rest(id, false);
-                }
-                return;
+            if !self.slide(id, assessed, time) {
+                break;
             }
-            assessed = self.assess(id);
         }
+        self.rest(id);
+    }
+
+    /// Whether a tip is on its way, so that its account alone says how far it goes. J swings by a half from step to
+    /// step with the waves that every increment sends out; a tip that asked it each time would stand still now and
+    /// then with ample credit, and what it takes meanwhile would be lost to it.
+    fn runs(&self, id: TipId) -> bool {
+        let cracks = &self.state.cracks;
+        let Some(tip) = cracks.tip(id) else { return false };
+        let has_schedule = tip.guide.as_ref().is_some_and(|g| g.due(0.0, 0.0).is_some());
+        tip.state == TipState::Growing
+            && self.solver.sliding().is_some()
+            && !has_schedule
+            && tip.time_at_rest < STANDS_STILL * self.crossing_time(id)
+    }
+
+    /// Time a wave takes for a cell at a tip [s].
+    fn crossing_time(&self, id: TipId) -> f64 {
+        let cracks = &self.state.cracks;
+        let material = self.scene.bodies[cracks.of(id).body as usize].material_at(cracks.position(id));
+        self.scene.cell_size / self.elastic[material].dilatational_wave_speed()
     }
 
     /// Sets a tip on its way through an increment, or at its end where tips only jump or the increment is not like
@@ -149,7 +163,8 @@ impl Simulation {
             }
             _ => {
                 let length = cracks.grow(id, &advance.points);
-                self.state.crack_energy += assessed.released.max(0.0) * length;
+                let most = growth::critical_release(cracks, id, assessed, &self.scene, &self.elastic);
+                self.state.crack_energy += assessed.released.clamp(0.0, most) * length;
             }
         }
         if let Some(tip) = cracks.tip_mut(id) {
@@ -162,46 +177,18 @@ impl Simulation {
         }
     }
 
-    /// Lets a tip run through its increment as far as it can pay. Whether it has come to the end of it.
-    ///
-    /// What the tip takes out of the body on the way is what the way costs: the energy balance holds over every
-    /// stretch, not only at the moment when growth begins.
-    fn slide(&mut self, id: TipId, assessed: &Assessment, time: f64) -> bool {
-        let cracks = &self.state.cracks;
-        let Some(tip) = cracks.tip(id) else { return false };
-        let Some(left) = cracks.left_of_increment(id) else { return true };
-        let (cost, most) = match growth::cost(cracks, id, assessed, &self.scene, time) {
-            Cost::Scheduled(due) => (0.0, due),
-            Cost::Energy(cost) => (cost, f64::INFINITY),
-        };
-        let most = most.min(left).min(-tip.ahead_of_limit);
-        let slack = BALANCE_CELLS * self.scene.cell_size * cost;
-        let balance = tip.balance.min(slack);
-        let Some(sliding) = self.solver.sliding() else { return true };
-        let release = sliding.release(cracks, id);
-        let distance = affordable(most, |distance| balance + release(distance) - cost * distance);
-        let arrives = distance >= left;
-        if !arrives && distance < LEAST_SLIDE * self.scene.cell_size {
-            return false;
+    /// A tip that has not moved, or not to the end of what it could.
+    fn rest(&mut self, id: TipId) {
+        let longest = ARRESTS * self.crossing_time(id);
+        let Some(tip) = self.state.cracks.tip_mut(id) else { return };
+        if tip.state == TipState::Growing && tip.time_at_rest > longest {
+            tip.state = TipState::Arrested;
         }
-        let taken = release(distance);
-        self.state.cracks.slide(id, distance);
-        if let Some(tip) = self.state.cracks.tip_mut(id) {
-            tip.balance = (balance + taken - cost * distance).max(0.0);
-        }
-        self.state.crack_energy += taken;
-        if let Some(sliding) = self.solver.sliding_mut() {
-            sliding.slide(&self.state.cracks, id);
-        }
-        arrives
     }
 
-    /// A tip that does not grow in this step; `held`: by the speed limit alone.
-    fn rest(&mut self, id: TipId, held: bool) {
-        let Some(tip) = self.state.cracks.tip_mut(id) else { return };
-        tip.steps_at_rest = if held { 0 } else { tip.steps_at_rest.saturating_add(1) };
-        if tip.state == TipState::Growing && tip.steps_at_rest > ARREST_STEPS {
-            tip.state = TipState::Arrested;
+    fn forget_rest(&mut self, id: TipId) {
+        if let Some(tip) = self.state.cracks.tip_mut(id) {
+            tip.time_at_rest = 0.0;
         }
     }
 
@@ -231,44 +218,17 @@ impl Simulation {
         self.counts.recuts += 1;
     }
 
-    /// Measures a tip between steps.
-    fn assess(&mut self, id: TipId) -> Assessment {
-        self.counts.looks += 1;
-        let gauge = Gauge { scene: &self.scene, elastic: &self.elastic };
-        let cracks = &self.state.cracks;
-        let mut assessed = growth::assess(&gauge.read(&*self.solver, cracks, id), &self.scene);
-        assessed.fracture_toughness = growth::toughness_ahead(cracks, id, &assessed, &self.scene);
-        assessed
-    }
-
     /// Measures every live tip now.
     pub fn measure_all(&mut self) {
         for id in self.state.cracks.live() {
-            let m = self.assess(id);
+            self.counts.looks += 1;
+            let gauge = Gauge { scene: &self.scene, elastic: &self.elastic };
+            let cracks = &self.state.cracks;
+            let mut m = growth::assess(&gauge.read(&*self.solver, cracks, id), &self.scene);
+            m.fracture_toughness = growth::toughness_ahead(cracks, id, &m, &self.scene);
             if let Some(tip) = self.state.cracks.tip_mut(id) {
                 tip.assessment = m;
             }
         }
     }
-}
-
-/// The farthest way, up to `most`, at the end of which `balance` is not negative. The balance is concave: softening
-/// gives less the farther it goes.
-fn affordable(most: f64, balance: impl Fn(f64) -> f64) -> f64 {
-    if most <= 0.0 {
-        return 0.0;
-    }
-    if balance(most) >= 0.0 {
-        return most;
-    }
-    let (mut enough, mut too_far) = (0.0, most);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (enough + too_far);
-        if balance(middle) >= 0.0 {
-            enough = middle;
-        } else {
-            too_far = middle;
-        }
-    }
-    enough
 }

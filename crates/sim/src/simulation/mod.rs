@@ -1,5 +1,6 @@
 //! The simulation as its users see it: steps, what is measured at the tips, growth, frames.
 
+mod account;
 mod advance;
 mod counts;
 mod estimate;

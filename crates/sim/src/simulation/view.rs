@@ -70,6 +70,13 @@ impl Simulation {
         }
     }
 
+    /// Kinetic and strain energy of one moment [J/m]. Those that [`Simulation::energies`] tells belong to moments half
+    /// a step apart, so that their sum ripples. Costs an evaluation of all forces.
+    pub fn energy_held(&self) -> f64 {
+        let energies = self.solver.energies();
+        energies.kinetic + energies.strain + self.solver.energy_of_lag()
+    }
+
     /// Linear [N s/m] and angular momentum about the origin [N s] now, per unit thickness.
     pub fn momenta(&self) -> (Vector, f64) {
         self.solver.momenta()

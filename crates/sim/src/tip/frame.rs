@@ -1,9 +1,9 @@
 //! The frame of a tip: where it is, where it points, and which face of its crack a place sees.
 
 use crate::crack::cracks::{Cracks, TipId};
-use crate::crack::crossing::Side;
+use crate::crack::crossing::{Side, side_of_crack};
 use crate::crack::{DIRECTION_LENGTH, chord_start};
-use fissure_plane::{Matrix, Point, Vector, orientation};
+use fissure_plane::{Matrix, Point, Vector};
 use fissure_scene::End;
 
 /// Segments behind a tip that are looked at for the side of a place; more than any integral reaches.
@@ -34,25 +34,23 @@ pub(crate) fn tip_of(cracks: &Cracks, id: TipId, points: &[Point], cell_size: f6
 }
 
 /// The face of the crack through `points` that a place sees, as a side of the frame of one of its tips (`ahead`: e1):
-/// that of the nearest segment behind the tip, of the tip's own line ahead.
+/// that of the nearest segment behind the tip, of the tip's own line ahead. A place on the crack is above it, as in
+/// [`crate::crack::crossing`].
 pub(crate) fn side_of(points: &[Point], end: End, ahead: Vector, place: Point) -> Side {
     let n = points.len();
     let tip = if end == End::Start { points[0] } else { points[n - 1] };
-    let mut sign = ahead.perp(&(place - tip));
-    if (place - tip).dot(&ahead) < 0.0 {
-        let mut nearest = f64::INFINITY;
-        for k in 0..(n - 1).min(SEGMENTS_BEHIND) {
-            // Towards the tip, so that the left side is that of e2.
-            let (a, b) = match end {
-                End::End => (points[n - 2 - k], points[n - 1 - k]),
-                End::Start => (points[k + 1], points[k]),
-            };
-            let distance = fissure_plane::distance_to_segment(place, a, b);
-            if distance < nearest {
-                nearest = distance;
-                sign = orientation(a, b, place);
-            }
+    let arm = place - tip;
+    if arm.dot(&ahead) >= 0.0 {
+        return if ahead.perp(&arm) >= 0.0 { Side::Above } else { Side::Below };
+    }
+    let mut nearest = (f64::INFINITY, 0);
+    for k in 0..(n - 1).min(SEGMENTS_BEHIND) {
+        let segment = if end == End::End { n - 2 - k } else { k };
+        let distance = fissure_plane::distance_to_segment(place, points[segment], points[segment + 1]);
+        if distance < nearest.0 {
+            nearest = (distance, segment);
         }
     }
-    if sign >= 0.0 { Side::Above } else { Side::Below }
+    let side = side_of_crack(points, nearest.1, place);
+    if end == End::End { side } else { side.opposite() }
 }

@@ -12,6 +12,7 @@ use super::lattice::Lattice;
 use super::motion::Motion;
 use super::near::Near;
 use super::probes::Probes;
+use crate::contact::neighbours::TOGETHER;
 use crate::crack::Crack;
 use crate::crack::contact::face_impulse;
 use crate::crack::cracks::Cracks;
@@ -35,6 +36,8 @@ pub(super) struct Contacts {
     pairs: Vec<FacePair>,
     /// Coefficient of friction; none where faces pass through each other.
     friction: Option<f64>,
+    /// Fields that have slid farther than this along each other have parted [m].
+    longest_slide: f64,
 }
 
 impl Contacts {
@@ -44,7 +47,7 @@ impl Contacts {
         for node in lattice.fields().divided_nodes() {
             add_pairs_of_node(lattice, node, cracks, &mut pairs);
         }
-        Self { pairs, friction }
+        Self { pairs, friction, longest_slide: TOGETHER * lattice.grid.cell_size }
     }
 
     /// Whether faces can press on each other.
@@ -104,6 +107,10 @@ impl Contacts {
                 continue;
             }
             let Some(n) = probes.segment_normal(pair.crack, pair.segment, motion) else { continue };
+            // Faces that have slid apart touch others than they faced at rest.
+            if (gap - n * gap.dot(&n)).norm() > self.longest_slide {
+                continue;
+            }
             // What is left of the gap may be used up in this step; faces that overlap stay as they are.
             let allowed = -gap.dot(&n).max(0.0) / time_step;
             let Some(impulse) = face_impulse(speed, n, allowed, [mass[a], mass[b]], friction) else { continue };

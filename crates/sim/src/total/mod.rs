@@ -8,8 +8,8 @@
 //!
 //! [`Total`] is made of parts, each of which owns its state and is handed what else it needs: the lattice with the
 //! masses of its fields, their motion, the probes that ride on it, loads, supports, colliders, the contacts of crack
-//! faces and the ties around tips. What is made from the lattice is made anew only near a crack that has grown
-//! ([`near::Near`]).
+//! faces and of surfaces, and the ties around tips. What is made from the lattice is made anew only near a crack that
+//! has grown ([`near::Near`]).
 
 mod colliders;
 mod contact;
@@ -32,10 +32,12 @@ mod run;
 mod snapshot;
 mod stability;
 mod supports;
+mod surfaces;
 #[cfg(test)]
 mod tests;
 mod tie;
 mod ties;
+mod touching;
 
 use crate::SimulationError;
 use crate::crack::cracks::{Cracks, TipId};
@@ -57,6 +59,7 @@ use probes::Probes;
 use std::sync::Arc;
 use supports::Supports;
 use ties::Ties;
+use touching::{LastImpulses, Moment, Touching};
 
 /// The total Lagrangian solver.
 #[derive(Debug)]
@@ -72,13 +75,14 @@ pub(crate) struct Total {
     supports: Supports,
     colliders: Colliders,
     contacts: Contacts,
+    touching: Touching,
     /// Work done by loads, supports and colliders so far [J/m].
     external_work: f64,
     steps_since_check: u32,
 }
 
 /// What of a solver cannot be laid anew from the scene and the cracks; last the work done so far.
-type Saved = (Layout, Motion, Probes, Ties, f64);
+type Saved = (Layout, Motion, Probes, Ties, LastImpulses, f64);
 
 /// Steps between two checks that everything is still finite and in range.
 const STEPS_BETWEEN_CHECKS: u32 = 8;
@@ -97,7 +101,7 @@ impl Total {
         let probes = Probes::new(scene, &lattice, cracks);
         let motion = Motion::initial(scene, &lattice);
         let ties = Ties::new(&lattice, &motion, cracks);
-        Self::of_parts(scene, lattice, (motion, probes, ties, 0.0), cracks)
+        Self::of_parts(scene, lattice, (motion, probes, ties, LastImpulses::default(), 0.0), cracks)
     }
 
     /// Goes on from a saved state.
@@ -111,16 +115,17 @@ impl Total {
         state: &[u8],
     ) -> Result<Self, SimulationError> {
         let mut lattice = Self::lattice(scene, particles, cracks)?;
-        let (layout, mut motion, probes, ties, external_work): Saved = saved::from_bytes(state)?;
+        let (layout, mut motion, probes, ties, impulses, external_work): Saved = saved::from_bytes(state)?;
         let fields = layout.fields.len();
         lattice.check(&layout, cracks.len())?;
         motion.check(fields)?;
         probes.check(fields, scene, cracks)?;
         ties.check(fields, lattice.grid.len(), cracks.len())?;
+        impulses.check()?;
         saved::finite("the work done so far", [&external_work])?;
         motion.resize(fields);
         lattice.set_layout(layout);
-        Self::of_parts(scene, lattice, (motion, probes, ties, external_work), cracks)
+        Self::of_parts(scene, lattice, (motion, probes, ties, impulses, external_work), cracks)
     }
 
     fn lattice(scene: &Scene, particles: Arc<Particles>, cracks: &Cracks) -> Result<Lattice, SimulationError> {
@@ -132,7 +137,7 @@ impl Total {
     fn of_parts(
         scene: &Scene,
         lattice: Lattice,
-        (motion, probes, ties, external_work): (Motion, Probes, Ties, f64),
+        (motion, probes, ties, impulses, external_work): (Motion, Probes, Ties, LastImpulses, f64),
         cracks: &Cracks,
     ) -> Result<Self, SimulationError> {
         let friction = scene.solver.crack_contact.then_some(scene.solver.crack_friction);
@@ -142,6 +147,7 @@ impl Total {
             supports: Supports::new(scene, &lattice)?,
             colliders: Colliders::new(scene, &lattice),
             contacts: Contacts::new(friction, &lattice, cracks),
+            touching: Touching::new(scene, impulses),
             scene: scene.clone(),
             lattice,
             motion,
@@ -162,6 +168,20 @@ impl Total {
     fn resolve_contacts(&mut self, kick: f64, time_step: f64) {
         let Self { lattice, motion, probes, contacts, .. } = self;
         contacts.resolve(lattice.mass(), probes, motion, kick, time_step);
+    }
+
+    /// Surfaces that touch, at the time `time` [s]. Whether any is near enough.
+    fn touch(&mut self, cracks: &Cracks, time: f64, kick: f64, time_step: f64) -> bool {
+        let Self { scene, lattice, motion, probes, supports, touching, external_work, .. } = self;
+        let moment = Moment { scene, lattice, probes, cracks, kick, time_step };
+        touching.look(&moment, motion);
+        if !touching.is_near() {
+            return false;
+        }
+        // What a support holds gives way to nothing.
+        supports.apply(&scene.supports, time, lattice.mass(), motion, external_work);
+        touching.resolve(&moment, &supports.held(&scene.supports, time), motion);
+        true
     }
 
     /// Supports, then colliders, at the time `time` [s].
@@ -236,10 +256,15 @@ impl Solver for Total {
             self.contacts.forget_forces();
             self.resolve_contacts(kick, time_step);
         }
+        let touches = self.touch(cracks, middle, kick, time_step);
         self.apply_boundaries(middle);
         if self.contacts.are_possible() && !self.colliders.is_empty() {
             self.resolve_contacts(kick, time_step);
         }
+        if touches && !self.colliders.is_empty() {
+            self.touching.resolve_again(&mut self.motion);
+        }
+        self.external_work += self.touching.keep(kick, &self.motion);
         self.motion.take_accelerations(kick);
         self.count_work(middle, time_step);
         observe(&self.look(0.5 * time_step));
@@ -264,6 +289,15 @@ impl Solver for Total {
         self.colliders.refresh(&near, &self.lattice);
         self.contacts.refresh(&near, &self.lattice, cracks);
         self.ties.refresh(&near, &self.lattice, &self.motion, cracks);
+        self.touching.change();
+    }
+
+    fn begin_run(&mut self) {
+        self.touching.look_again();
+    }
+
+    fn is_touching(&self) -> bool {
+        self.touching.is_touching()
     }
 
     fn sliding(&self) -> Option<&dyn SlidingTips> {
@@ -330,7 +364,8 @@ impl Snapshot for Total {
     }
 
     fn save(&self) -> Result<Vec<u8>, SimulationError> {
-        let saved = (&self.lattice.layout, &self.motion, &self.probes, &self.ties, self.external_work);
+        let saved =
+            (&self.lattice.layout, &self.motion, &self.probes, &self.ties, self.touching.last(), self.external_work);
         saved::to_bytes(&saved)
     }
 }

@@ -133,6 +133,11 @@ impl Motion {
         kick
     }
 
+    /// Velocities before the kick of this step, until accelerations are taken.
+    pub(super) fn before_kick(&self) -> &FieldVectors {
+        &self.acceleration
+    }
+
     /// Makes the accelerations of what all kicks of a step, `kick` [s] long, have made of the velocities before it.
     pub(super) fn take_accelerations(&mut self, kick: f64) {
         for axis in 0..2 {

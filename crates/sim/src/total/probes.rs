@@ -3,9 +3,9 @@
 use super::lattice::Lattice;
 use super::motion::Motion;
 use super::probe::Probe;
-use crate::crack::Crack;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::crossing::Side;
+use crate::crack::{Crack, left_at};
 use crate::faces::outlines::Outlines;
 use crate::saved::{self, Fits};
 use fissure_plane::{Point, Vector};
@@ -24,11 +24,8 @@ impl Lattice {
 
     /// Probe of one face at point `k` of a crack.
     fn face_probe(&self, crack: &Crack, k: usize, side: Side) -> Probe {
-        let before = crack.points[k.saturating_sub(1)];
-        let after = crack.points[(k + 1).min(crack.points.len() - 1)];
-        let tangent = (after - before).normalize();
-        let normal = Vector::new(-tangent.y, tangent.x) * side.sign();
-        self.probe(crack.body, crack.points[k], crack.points[k] + normal * (NUDGE * self.grid.cell_size))
+        let outward = left_at(&crack.points, k) * side.sign();
+        self.probe(crack.body, crack.points[k], crack.points[k] + outward * (NUDGE * self.grid.cell_size))
     }
 }
 

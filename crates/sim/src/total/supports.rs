@@ -59,6 +59,16 @@ impl Supports {
         self.0.sort_unstable_by_key(|c| (c.support, c.field));
     }
 
+    /// The fields that `supports` hold at the time `time` [s].
+    pub(super) fn held(&self, supports: &[Support], time: f64) -> HeldFields {
+        let mut held = Vec::new();
+        for c in &self.0 {
+            held.extend(prescribed(&supports[c.support as usize], time).map(|held| (c.field, held.axis)));
+        }
+        held.sort_unstable();
+        HeldFields(held)
+    }
+
     /// Makes velocities those that `supports` prescribe at the time `time` [s]. Adds the work of a step to `work`
     /// [J/m].
     pub(super) fn apply(&self, supports: &[Support], time: f64, mass: &[f64], motion: &mut Motion, work: &mut f64) {
@@ -71,6 +81,17 @@ impl Supports {
                 motion.velocity[held.axis][d] = after;
             }
         }
+    }
+}
+
+/// Fields that supports hold now, along which axes.
+#[derive(Debug, Clone, Default)]
+pub(super) struct HeldFields(Vec<(u32, usize)>);
+
+impl HeldFields {
+    /// Whether a field is held along an axis.
+    pub(super) fn holds(&self, field: u32, axis: usize) -> bool {
+        self.0.binary_search(&(field, axis)).is_ok()
     }
 }
 

@@ -119,6 +119,11 @@ impl TieUnits {
     pub(super) fn of(lattice: &Lattice) -> Self {
         Self { cell_size: lattice.grid.cell_size, crossing: lattice.crossing_time() }
     }
+
+    /// Inertia of a tie over its stiffness [s²].
+    pub(super) fn inertia_per_stiffness(self) -> f64 {
+        (INERTIA * self.crossing).powi(2)
+    }
 }
 
 impl Tie {
@@ -173,7 +178,7 @@ impl Tie {
     pub(super) fn soften(&mut self, ahead: f64, units: TieUnits) {
         let released = released_part(ahead);
         self.stiffness = self.scale * softness(released);
-        self.inertia = self.stiffness * (INERTIA * units.crossing).powi(2);
+        self.inertia = self.stiffness * units.inertia_per_stiffness();
         let stiff = (1.0 - released).powi(3);
         self.drag = DRAG * stiff / (stiff + released) * self.scale * units.crossing;
     }
@@ -228,11 +233,12 @@ impl Tie {
         // What is apart by round-off only has no direction.
         let least = ROUND_OFF * (u[0][a].abs() + u[1][a].abs() + u[0][b].abs() + u[1][b].abs());
         let Some(direction) = self.opening(u).try_normalize(least) else { return };
-        let speed = direction * direction.dot(&self.opening(&motion.velocity));
-        // The impulse works along the displacement of the step, which has the speed that is kept.
-        self.dragged += inertia * (1.0 - kept) * kept * speed.norm_squared();
+        let speed = direction.dot(&self.opening(&motion.velocity));
+        let before = direction.dot(&self.opening(motion.before_kick()));
+        // What an impulse takes out of the leapfrog is its work at the mean of the velocities before and after a kick.
+        self.dragged += inertia * (1.0 - kept) * speed * 0.5 * (before + kept * speed);
         for axis in 0..2 {
-            let change = speed[axis] * (1.0 - kept) * reduced;
+            let change = direction[axis] * speed * (1.0 - kept) * reduced;
             motion.velocity[axis][a] += change / mass_a;
             motion.velocity[axis][b] -= change / mass_b;
         }

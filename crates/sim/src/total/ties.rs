@@ -162,18 +162,22 @@ impl Ties {
 
     /// What the ties of a tip would give up if it went straight on now.
     ///
-    /// The leapfrog keeps ½ v(t − Δt/2) · M v(t + Δt/2) + U(t). Both kicks count: a stiffness that changes by ΔK at t
-    /// changes this by ½ u(t − Δt) · ΔK u(t).
+    /// The leapfrog keeps ½ v(t − Δt/2) · M v(t + Δt/2) + U(t), with v the velocity before a kick in both places where
+    /// the kick changes. A stiffness that changes by ΔK at t and an inertia that changes by ΔM with it change this by
+    /// ½ u(t − Δt) · ΔK u(t) + ½ v(t − Δt/2) · ΔM v(t − Δt/2).
     pub(super) fn release(&self, lattice: &Lattice, motion: &Motion, cracks: &Cracks, id: TipId) -> Release {
-        let h = lattice.grid.cell_size;
+        let units = TieUnits::of(lattice);
+        let h = units.cell_size;
         let (tip, direction) = (cracks.position(id), cracks.last_direction(id));
         let ties = self.of_tip.get(&id).map_or(&[][..], Vec::as_slice);
         let springs: Vec<(f64, f64, f64)> = ties
             .iter()
             .map(|tie| {
                 let now = tie.stretch(&motion.displacement);
-                let before = now - tie.opening(&motion.velocity) * motion.last_step;
-                (tie.ahead_of(tip, direction, h), tie.stiffness / tie.scale, 0.5 * tie.scale * now.dot(&before))
+                let rate = tie.opening(&motion.velocity);
+                let before = now - rate * motion.last_step;
+                let held = now.dot(&before) + units.inertia_per_stiffness() * rate.norm_squared();
+                (tie.ahead_of(tip, direction, h), tie.stiffness / tie.scale, 0.5 * tie.scale * held)
             })
             .collect();
         Box::new(move |distance| {

@@ -5,9 +5,9 @@ use super::points::Points;
 use super::setup::Setup;
 use super::tracer::{SIDES, Tracer};
 use crate::SimulationError;
-use crate::crack::Crack;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::division::{Division, TipCut};
+use crate::crack::{Crack, left_at};
 use crate::faces::outlines::Outlines;
 use crate::grid::kernel;
 use crate::saved::{self, Fits};
@@ -133,14 +133,11 @@ impl CrackNow {
     /// Velocity of a crack point and of its faces above and below.
     fn velocities_at(&self, k: usize, material: &MaterialVelocity<'_>) -> [Vector; 3] {
         let place = self.position[k];
-        let (before, after) = (self.position[k.saturating_sub(1)], self.position[(k + 1).min(self.position.len() - 1)]);
-        let along = after - before;
-        let length = along.norm();
-        let normal = if length > 0.0 { Vector::new(-along.y, along.x) / length } else { Vector::zeros() };
+        let left = left_at(&self.position, k);
         let hair = NUDGE * material.setup.scene.cell_size;
         let faces = [0, 1].map(|side| {
             let face = self.faces[side][k];
-            let out = normal * SIDES[side].sign();
+            let out = left * SIDES[side].sign();
             // At least a hair beside the crack line, even where the faces overlap.
             let height = (face - place).dot(&out);
             material.at(face, face + out * (hair - height).max(0.0))

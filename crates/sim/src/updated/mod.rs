@@ -299,6 +299,12 @@ impl Solver for Updated {
         self.lattice.division = self.faces.division(&self.setup, cracks);
     }
 
+    fn begin_run(&mut self) {}
+
+    fn is_touching(&self) -> bool {
+        false
+    }
+
     fn sliding(&self) -> Option<&dyn SlidingTips> {
         None
     }

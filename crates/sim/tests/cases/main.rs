@@ -6,6 +6,7 @@ mod contour;
 mod contract;
 mod directing;
 mod plane;
+mod price;
 mod scale;
 mod singular;
 mod updated_solver;

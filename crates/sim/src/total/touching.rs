@@ -1,0 +1,249 @@
+//! Contact of outlines and crack faces with each other: which surfaces are near, and the impulses of a step.
+
+use super::lattice::Lattice;
+use super::motion::Motion;
+use super::probes::Probes;
+use super::supports::HeldFields;
+use super::surfaces::{Surfaces, can_meet};
+use crate::contact::impulses::{Impulse, Meetings, Share, allowed};
+use crate::contact::meeting::{Meeting, meeting};
+use crate::contact::neighbours::Neighbours;
+use crate::crack::cracks::Cracks;
+use crate::saved::{self, Fits};
+use fissure_plane::{Point, Vector};
+use fissure_scene::Scene;
+use serde::{Deserialize, Serialize};
+
+/// Steps between two looks at how far surfaces have moved: a wave takes more than twice as many for the reach of a look
+/// at material that moves at a tenth of its speed.
+const STEPS_BETWEEN_LOOKS: u32 = 8;
+
+/// Surfaces are looked at anew when they may have come nearer to each other by this, in cells: half of what
+/// neighbours are looked for in.
+const MOST_MOVED: f64 = 0.8;
+
+/// A gap that is wider than this, in cells, and does not close within a step needs no impulse.
+const SLIM: f64 = 0.1;
+
+/// What touches, or may.
+#[derive(Debug)]
+pub(super) struct Touching {
+    /// None where nothing can ever meet.
+    surfaces: Option<Surfaces>,
+    cracks_touch: bool,
+    cell_size: f64,
+    /// Whether the surfaces have changed since they were laid.
+    is_stale: bool,
+    neighbours: Neighbours,
+    /// Where vertices that were asked for are [m].
+    place: Vec<Point>,
+    /// How much nearer to each other surfaces may have come since neighbours were found [m].
+    moved: f64,
+    steps_since_look: u32,
+    meetings: Meetings,
+    /// What goes on from step to step.
+    last: LastImpulses,
+}
+
+/// The impulses of the last step.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(super) struct LastImpulses {
+    impulses: Vec<Impulse>,
+    /// Time in which they acted [s].
+    kick: f64,
+}
+
+impl LastImpulses {
+    /// Checks impulses that were read.
+    ///
+    /// # Errors
+    /// [`SimulationError::BadState`](crate::SimulationError::BadState)
+    pub(super) fn check(&self) -> Fits {
+        saved::finite("an impulse", self.impulses.iter().flat_map(|i| [&i.normal, &i.tangential]))?;
+        saved::ensure(self.impulses.is_sorted_by_key(|i| i.vertex), "an impulse")?;
+        saved::finite("an impulse", [&self.kick])
+    }
+
+    fn of(&self, vertex: u32, kick: f64) -> Impulse {
+        let scale = if self.kick > 0.0 { kick / self.kick } else { 0.0 };
+        match self.impulses.binary_search_by_key(&vertex, |impulse| impulse.vertex) {
+            Ok(found) => {
+                let Impulse { normal, tangential, .. } = self.impulses[found];
+                Impulse { vertex, normal: normal * scale, tangential: tangential * scale }
+            }
+            Err(_) => Impulse { vertex, normal: 0.0, tangential: 0.0 },
+        }
+    }
+}
+
+/// What a step of contact works on.
+pub(super) struct Moment<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) lattice: &'a Lattice,
+    pub(super) probes: &'a Probes,
+    pub(super) cracks: &'a Cracks,
+    /// Time of the kick of this step, and of the step [s].
+    pub(super) kick: f64,
+    pub(super) time_step: f64,
+}
+
+impl Touching {
+    /// What of `scene` can touch; `last`: impulses to go on from.
+    pub(super) fn new(scene: &Scene, last: LastImpulses) -> Self {
+        Self {
+            surfaces: can_meet(scene).then(Surfaces::default),
+            cracks_touch: scene.solver.crack_contact,
+            cell_size: scene.cell_size,
+            is_stale: true,
+            neighbours: Neighbours::default(),
+            place: Vec::new(),
+            moved: f64::INFINITY,
+            steps_since_look: 0,
+            meetings: Meetings::default(),
+            last,
+        }
+    }
+
+    /// The impulses of the last step.
+    pub(super) fn last(&self) -> &LastImpulses {
+        &self.last
+    }
+
+    /// Whether anything has touched in the last step.
+    pub(super) fn is_touching(&self) -> bool {
+        !self.last.impulses.is_empty()
+    }
+
+    /// The surfaces have got other vertices.
+    pub(super) fn change(&mut self) {
+        self.is_stale = true;
+    }
+
+    /// What was found so far counts no more.
+    pub(super) fn look_again(&mut self) {
+        self.moved = f64::INFINITY;
+    }
+
+    /// Looks for what may touch, where surfaces may have moved enough.
+    pub(super) fn look(&mut self, moment: &Moment<'_>, motion: &Motion) {
+        let Some(surfaces) = &mut self.surfaces else { return };
+        self.steps_since_look += 1;
+        let is_due = self.steps_since_look >= STEPS_BETWEEN_LOOKS || self.moved == f64::INFINITY;
+        if !is_due && (!self.is_stale || self.neighbours.is_empty()) {
+            return;
+        }
+        let Moment { scene, probes, cracks, time_step, .. } = *moment;
+        if self.is_stale {
+            let before = std::mem::replace(surfaces, Surfaces::new(scene, probes, cracks));
+            self.last.impulses = renumbered(&self.last.impulses, &before, surfaces);
+            if !self.neighbours.is_empty() {
+                self.moved = f64::INFINITY;
+            }
+            self.is_stale = false;
+        }
+        let vertices = 0..surfaces.surface.len() as u32;
+        // Twice: until the next look they go on as far.
+        let speed = relative_speed(vertices.clone().map(|v| surfaces.probe(v, probes).value(&motion.velocity)));
+        let way = speed * time_step * f64::from(STEPS_BETWEEN_LOOKS);
+        self.moved += way;
+        self.steps_since_look = 0;
+        if self.moved + way < MOST_MOVED * self.cell_size {
+            return;
+        }
+        self.place = vertices.map(|v| surfaces.probe(v, probes).moved(&motion.displacement)).collect();
+        self.neighbours = Neighbours::find(&surfaces.surface, &self.place, self.cell_size, self.cracks_touch);
+        self.moved = 0.0;
+    }
+
+    /// Whether anything is near enough to touch.
+    pub(super) fn is_near(&self) -> bool {
+        !self.neighbours.is_empty()
+    }
+
+    /// Gives velocities the impulses of all that touches. `held`: fields that supports hold.
+    pub(super) fn resolve(&mut self, moment: &Moment<'_>, held: &HeldFields, motion: &mut Motion) {
+        self.meetings.clear();
+        let Some(surfaces) = &self.surfaces else { return };
+        let Moment { probes, kick, time_step, .. } = *moment;
+        for &v in self.neighbours.asked() {
+            self.place[v as usize] = surfaces.probe(v, probes).moved(&motion.displacement);
+        }
+        let mut shares = Vec::new();
+        for (vertex, near) in self.neighbours.iter() {
+            let Some(found) = meeting(&surfaces.surface, &self.place, vertex, near, self.cell_size) else { continue };
+            let value = |v: u32| surfaces.probe(v, probes).value(&motion.velocity);
+            let relative =
+                value(vertex) - value(found.ends[0]) * (1.0 - found.along) - value(found.ends[1]) * found.along;
+            let least = allowed(found.gap, self.cell_size, time_step);
+            let before = self.last.of(vertex, kick);
+            if found.gap > SLIM * self.cell_size && relative.dot(&found.normal) > least && before.normal == 0.0 {
+                continue;
+            }
+            shares_of(&mut shares, surfaces, vertex, &found, moment, held);
+            self.meetings.push(found.normal, least, 0.0, &mut shares, before);
+        }
+        self.meetings.begin(&mut motion.velocity);
+        self.meetings.solve(&mut motion.velocity);
+    }
+
+    /// Goes on with the impulses of [`Touching::resolve`] after velocities have changed.
+    pub(super) fn resolve_again(&mut self, motion: &mut Motion) {
+        self.meetings.solve(&mut motion.velocity);
+    }
+
+    /// The step is over: keeps its impulses, which acted for `kick` [s]. Returns the work that supports did against
+    /// them [J/m].
+    pub(super) fn keep(&mut self, kick: f64, motion: &Motion) -> f64 {
+        self.last.impulses.clear();
+        if self.meetings.is_empty() {
+            return 0.0;
+        }
+        self.last.impulses.extend(self.meetings.impulses());
+        self.last.kick = kick;
+        -self.meetings.work_on_held(&motion.velocity)
+    }
+}
+
+/// How the fields take part in a meeting.
+fn shares_of(
+    shares: &mut Vec<Share>,
+    surfaces: &Surfaces,
+    vertex: u32,
+    found: &Meeting,
+    moment: &Moment<'_>,
+    held: &HeldFields,
+) {
+    let parts = [(vertex, 1.0), (found.ends[0], found.along - 1.0), (found.ends[1], -found.along)];
+    for (v, part) in parts.into_iter().filter(|(_, part)| *part != 0.0) {
+        for &(field, weight) in &surfaces.probe(v, moment.probes).entries {
+            let free = moment.lattice.inverse_mass[field as usize];
+            let mobility = [0, 1].map(|axis| if held.holds(field, axis) { 0.0 } else { free });
+            shares.push(Share { field, weight: part * weight, mobility });
+        }
+    }
+}
+
+/// The impulses with the numbers that their vertices have now: those at the same place at rest, on the same side of a
+/// crack.
+fn renumbered(impulses: &[Impulse], before: &Surfaces, now: &Surfaces) -> Vec<Impulse> {
+    if impulses.is_empty() {
+        return Vec::new();
+    }
+    let mut carriers: Vec<_> = (0..now.surface.len() as u32).map(|v| (now.key(v), v)).collect();
+    carriers.sort_unstable();
+    let number = |impulse: &Impulse| {
+        let key = before.key(impulse.vertex);
+        let found = carriers.binary_search_by(|(k, _)| k.cmp(&key)).ok()?;
+        Some(Impulse { vertex: carriers[found].1, ..*impulse })
+    };
+    let mut all: Vec<Impulse> = impulses.iter().filter_map(number).collect();
+    all.sort_unstable_by_key(|impulse| impulse.vertex);
+    all
+}
+
+/// No two of `velocities` differ by more than this [m/s].
+fn relative_speed(velocities: impl Iterator<Item = Vector>) -> f64 {
+    let infinite = Vector::repeat(f64::INFINITY);
+    let (low, high) = velocities.fold((infinite, -infinite), |(low, high), v| (low.inf(&v), high.sup(&v)));
+    (high - low).norm().max(0.0)
+}
