@@ -2,10 +2,12 @@
 
 use crate::SimulationError;
 use crate::boundary::selector::Selector;
+use crate::grid::coverage::Cover;
 use crate::grid::scan::Places;
 use crate::grid::spans::{Span, SpanRows};
 use fissure_plane::{Matrix, Point, Vector, bounds};
 use fissure_scene::{KeyPath, ParticleFrame, Scene, SceneFault, Selection};
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// The particles of all bodies at rest, in the order body, row, column. Shape: one entry per particle in every list.
@@ -23,19 +25,26 @@ pub(crate) struct Particles {
     pub(crate) body: Vec<u32>,
     /// Material.
     pub(crate) material: Vec<u32>,
-    /// Volume at rest per unit thickness V_p [m²].
+    /// Volume at rest per unit thickness V_p [m²]: s², but at an outline what of the body lies there.
     pub(crate) volume: Vec<f64>,
     /// Mass per unit thickness m_p [kg/m].
     pub(crate) mass: Vec<f64>,
+    /// Particles whose volume is not s², rising, with the way from where they stand to the centre of it [m].
+    off_center: Vec<(u32, Vector)>,
     /// Which particle stands where.
     lattice: SpanRows,
 }
+
+/// The least volume of a particle, in s²: that of one in a corner so sharp that next to nothing is there.
+const LEAST_VOLUME: f64 = 1e-3;
 
 /// More places than this along an axis are not counted.
 const MOST_PLACES: f64 = (1 << 30) as f64;
 
 impl Particles {
     /// Fills the bodies of `scene` with particles on one lattice; those whose centre lies inside belong to the body.
+    ///
+    /// Together they have the volume of the body: what lies in a square without a particle goes to the one beside.
     ///
     /// # Errors
     /// When a body holds none, or the bodies reach too far to count their places.
@@ -74,11 +83,73 @@ impl Particles {
                 particles.body.push(index as u32);
                 particles.material.push(material as u32);
                 particles.volume.push(s * s);
-                particles.mass.push(s * s * scene.materials[material].density);
+                particles.mass.push(0.0);
             }
         }
         particles.lattice = lattice_of(&particles.place);
+        let mut first = 0;
+        for (index, body) in scene.bodies.iter().enumerate() {
+            let count = particles.body[first..].partition_point(|&of| of as usize == index);
+            particles.trim(first..first + count, &places.covers_along(&body.region), scene.cell_size / s);
+            first += count;
+        }
+        for (p, mass) in particles.mass.iter_mut().enumerate() {
+            *mass = particles.volume[p] * scene.materials[particles.material[p] as usize].density;
+        }
         Ok(particles)
+    }
+
+    /// Gives the particles of a body, which are `own`, the volume of it: `covers` are the squares that its outline
+    /// crosses. Cells are `side` squares wide.
+    fn trim(&mut self, own: Range<usize>, covers: &[Cover], side: f64) {
+        // Of each particle at the outline: part of a square, and its first moment about the middle [squares].
+        let mut parts: BTreeMap<usize, (f64, Vector)> = BTreeMap::new();
+        for cover in covers {
+            if let Some(p) = self.at_of(&own, cover.place) {
+                parts.insert(p, (cover.part, cover.center * cover.part));
+            }
+        }
+        for cover in covers.iter().filter(|cover| self.at_of(&own, cover.place).is_none()) {
+            let Some(p) = self.beside(&own, cover, side) else { continue };
+            let (volume, moment) = parts.entry(p).or_insert((1.0, Vector::zeros()));
+            *volume += cover.part;
+            *moment += (offset(self.place[p], cover.place) + cover.center) * cover.part;
+        }
+        let square = self.spacing * self.spacing;
+        for (p, (volume, moment)) in parts {
+            self.volume[p] = square * volume.max(LEAST_VOLUME);
+            self.off_center.push((p as u32, moment * (self.spacing / volume)));
+        }
+    }
+
+    /// The particle of `own`, those of one body, at a place.
+    fn at_of(&self, own: &Range<usize>, [i, j]: [i32; 2]) -> Option<usize> {
+        let found = self.place[own.clone()].binary_search_by_key(&(j, i), |place| (place[1], place[0]));
+        found.ok().map(|index| own.start + index)
+    }
+
+    /// The particle of `own` that takes what lies in a square without one: in the same cell of `side` squares if there
+    /// is one, else the nearest; none within reach of a spike thinner than a square.
+    fn beside(&self, own: &Range<usize>, cover: &Cover, side: f64) -> Option<usize> {
+        const REACH: i32 = 2;
+        let cell = |place: [i32; 2]| place.map(|k| ((f64::from(k) + 0.5) / side).floor());
+        let mut nearest: Option<(bool, f64, usize)> = None;
+        for (i, j) in (-REACH..=REACH).flat_map(|j| (-REACH..=REACH).map(move |i| (i, j))) {
+            let place = [cover.place[0] + i, cover.place[1] + j];
+            let Some(p) = self.at_of(own, place) else { continue };
+            let away = (offset(place, cover.place) + cover.center).norm_squared();
+            let candidate = (cell(place) != cell(cover.place), away, p);
+            if nearest.is_none_or(|n| candidate < n) {
+                nearest = Some(candidate);
+            }
+        }
+        nearest.map(|(_, _, p)| p)
+    }
+
+    /// From where a particle stands to the centre of its volume [m]; none of a whole one.
+    pub(crate) fn off_center(&self, particle: usize) -> Option<Vector> {
+        let found = self.off_center.binary_search_by_key(&(particle as u32), |&(p, _)| p);
+        found.ok().map(|index| self.off_center[index].1)
     }
 
     /// No particles, with room for `count`.
@@ -92,6 +163,7 @@ impl Particles {
             material: Vec::with_capacity(count),
             volume: Vec::with_capacity(count),
             mass: Vec::with_capacity(count),
+            off_center: Vec::new(),
             lattice: SpanRows::default(),
         }
     }
@@ -200,6 +272,11 @@ impl Particles {
         };
         SceneFault::new(path, format!("{array} {} selects no particle: {why}", index + 1), remedy)
     }
+}
+
+/// From one square to another, in squares.
+fn offset(from: [i32; 2], to: [i32; 2]) -> Vector {
+    Vector::new(f64::from(to[0] - from[0]), f64::from(to[1] - from[1]))
 }
 
 /// How a particle is at one moment.

@@ -2,8 +2,9 @@
 
 use crate::SimulationError;
 use crate::boundary::selector::Selector;
+use crate::grid::coverage::cuts;
 use crate::particles::Particles;
-use fissure_scene::{Load, LoadKind, Point, Scene, Selection, Vector};
+use fissure_scene::{Load, LoadKind, OutlineStretch, Point, Scene, Selection, Vector};
 
 /// Where a force acts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,7 +40,7 @@ pub(crate) fn forces_of_load(
     let load: &Load = &scene.loads[index];
     let forces = match &load.kind {
         LoadKind::Force(total) => by_volume(scene, particles, &load.selection, *total),
-        LoadKind::Traction(traction) => along_outlines(scene, particles.spacing, &load.selection, *traction),
+        LoadKind::Traction(traction) => along_outlines(scene, particles.anchor, &load.selection, *traction),
         LoadKind::PerPoint(values) => values
             .iter()
             .filter_map(|&(place, force)| Some((nearest(particles, 0..particles.len() as u32, place)?, force)))
@@ -60,22 +61,19 @@ fn by_volume(scene: &Scene, particles: &Particles, selection: &Selection, total:
     selected.into_iter().map(|p| PointForce { place: ForcePlace::Particle(p), force: force(p) }).collect()
 }
 
-/// So far beside an outline, in cells, is its own body.
-const HAIR: f64 = 1e-6;
-
-/// A traction on the selected pieces of the outlines, by their length: a force in the middle of each half cell, so that
-/// every node gets the load of its hat.
-fn along_outlines(scene: &Scene, spacing: f64, selection: &Selection, traction: Vector) -> Vec<PointForce> {
+/// A traction on the selected pieces of the outlines, by their length: two forces in each cell that an edge passes
+/// through, where Gauss' rule has them, so that every node gets the exact load of its hat.
+fn along_outlines(scene: &Scene, anchor: Point, selection: &Selection, traction: Vector) -> Vec<PointForce> {
     let mut forces = Vec::new();
-    for [a, b] in Selector::new(scene, selection).pieces(scene) {
-        // The material lies to the left, where another body may be as near on the right.
-        let inwards = Vector::new(a.y - b.y, b.x - a.x).normalize() * (HAIR * scene.cell_size);
-        let beside = nalgebra::center(&a, &b) + inwards;
-        let body = scene.bodies.iter().position(|body| body.region.contains(beside)).unwrap_or(0) as u32;
-        let pieces = ((b - a).norm() / spacing).round().max(1.0) as usize;
-        let force = traction * ((b - a).norm() / pieces as f64);
-        let middle = |k: usize| a + (b - a) * ((k as f64 + 0.5) / pieces as f64);
-        forces.extend((0..pieces).map(|k| PointForce { place: ForcePlace::Outline { body, place: middle(k) }, force }));
+    for OutlineStretch { body, from, to } in Selector::new(scene, selection).pieces(scene) {
+        let [a, b] = [from, to].map(|p| (p - anchor) / scene.cell_size);
+        for cut in cuts(a, b).windows(2) {
+            let (middle, half) = (0.5 * (cut[0] + cut[1]), 0.5 * (cut[1] - cut[0]));
+            let force = traction * ((to - from).norm() * half);
+            let at = |t: f64| ForcePlace::Outline { body: body as u32, place: from + (to - from) * t };
+            let off = half / 3.0_f64.sqrt();
+            forces.extend([middle - off, middle + off].map(|t| PointForce { place: at(t), force }));
+        }
     }
     forces
 }

@@ -61,19 +61,41 @@ impl<'s> Selector<'s> {
         }
     }
 
-    /// The pieces of the outlines that are selected, the material to their left: of an edge its own, of other
-    /// selections those that lie in them.
-    pub(crate) fn pieces(&self, scene: &Scene) -> Vec<[Point; 2]> {
+    /// The pieces of the outlines that are selected: of an edge its own, of other selections those that lie in them.
+    pub(crate) fn pieces(&self, scene: &Scene) -> Vec<OutlineStretch> {
         if let Self::Outline(stretches) = self {
-            return stretches.iter().map(|s| [s.from, s.to]).collect();
+            return stretches.to_vec();
         }
         let slack = 1e-6 * scene.cell_size;
-        let edges = scene.bodies.iter().enumerate().flat_map(|(index, body)| {
-            let of =
-                |ring: &[Point]| (0..ring.len()).map(|i| [ring[i], ring[(i + 1) % ring.len()]]).collect::<Vec<_>>();
-            body.region.rings().flat_map(of).map(move |edge| (index, edge))
-        });
-        edges.filter(|&(body, edge)| self.has_piece(body, edge, slack)).map(|(_, edge)| edge).collect()
+        edges(scene).filter(|edge| self.has_piece(edge.body, [edge.from, edge.to], slack)).collect()
+    }
+
+    /// The parts of the outlines that lie in a region, however it cuts them; the pieces of other selections.
+    pub(crate) fn parts(&self, scene: &Scene) -> Vec<OutlineStretch> {
+        let Self::Region { region, .. } = self else { return self.pieces(scene) };
+        let slack = 1e-6 * scene.cell_size;
+        let (low, high) = region.bounds();
+        let reach = Vector::repeat(slack);
+        let mut parts = Vec::new();
+        for edge in edges(scene) {
+            let (a, b) = (edge.from, edge.to);
+            if a.sup(&b) < low - reach || a.inf(&b) > high + reach {
+                continue;
+            }
+            let mut cuts = vec![0.0, 1.0];
+            for ring in region.rings() {
+                cuts.extend((0..ring.len()).filter_map(|k| meeting(a, b, ring[k], ring[(k + 1) % ring.len()])));
+            }
+            cuts.sort_unstable_by(f64::total_cmp);
+            for cut in cuts.windows(2).filter(|cut| (cut[1] - cut[0]) * (b - a).norm() > slack) {
+                let at = |t: f64| if t == 1.0 { b } else { a + (b - a) * t };
+                let middle = at(0.5 * (cut[0] + cut[1]));
+                if region.contains(middle) || region.distance_to_rings(middle) <= slack {
+                    parts.push(OutlineStretch { from: at(cut[0]), to: at(cut[1]), ..edge });
+                }
+            }
+        }
+        parts
     }
 
     /// Whether the piece from `a` to `b` of a ring of `body` is selected, to within `slack` [m].
@@ -119,6 +141,23 @@ impl<'s> Side<'s> {
             BoxSide::Top => self.at - point.y,
         }
     }
+}
+
+/// All edges of the outlines.
+fn edges(scene: &Scene) -> impl Iterator<Item = OutlineStretch> {
+    scene.bodies.iter().enumerate().flat_map(|(body, of)| {
+        of.region.rings().flat_map(move |ring| {
+            (0..ring.len()).map(move |k| OutlineStretch { body, from: ring[k], to: ring[(k + 1) % ring.len()] })
+        })
+    })
+}
+
+/// Where on the way from `a` to `b`, as a part of it, the line from `c` to `d` is met.
+fn meeting(a: Point, b: Point, c: Point, d: Point) -> Option<f64> {
+    let (way, other) = (b - a, d - c);
+    let turn = way.perp(&other);
+    let (t, u) = ((c - a).perp(&other) / turn, (c - a).perp(&way) / turn);
+    ((0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&u)).then_some(t)
 }
 
 /// Whether a place lies beside one of the stretches, or around the corner of two that follow on each other.

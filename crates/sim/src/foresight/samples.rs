@@ -2,7 +2,7 @@
 
 use crate::boundary::selector::Selector;
 use crate::particles::Particles;
-use fissure_scene::{LoadKind, Point, Scene, Selection, Vector};
+use fissure_scene::{LoadKind, OutlineStretch, Point, Scene, Selection, Vector};
 
 /// Places along the larger side of the box around all bodies.
 const RESOLUTION: f64 = 64.0;
@@ -71,7 +71,7 @@ fn on_outlines(
     spacing: f64,
 ) -> Vec<PlacedForce> {
     let mut forces = Vec::new();
-    for [from, to] in Selector::new(scene, selection).pieces(scene) {
+    for OutlineStretch { from, to, .. } in Selector::new(scene, selection).pieces(scene) {
         let length = (to - from).norm();
         let parts = (length / spacing).ceil().max(1.0);
         let body = nearest_body(particles, nalgebra::center(&from, &to));

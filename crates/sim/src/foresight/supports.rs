@@ -1,5 +1,6 @@
 //! Supports that want different things of the same material.
 
+use crate::boundary;
 use crate::particles::Particles;
 use fissure_scene::{KeyPath, Scene, SceneFault, Support};
 
@@ -39,16 +40,7 @@ pub(super) fn check_supports(scene: &Scene, particles: &Particles) -> Result<(),
 
 /// The first axis and a time [s] at which two supports prescribe different velocities.
 fn contradiction(a: &Support, b: &Support) -> Option<(usize, f64)> {
-    // Both velocities are linear between these times, and constant outside.
-    let times = || std::iter::once(0.0).chain(a.curve.points.iter().chain(&b.curve.points).map(|p| p.0));
-    (0..2).find_map(|axis| {
-        let (u, v) = (a.velocity[axis]?, b.velocity[axis]?);
-        let differ = |t: &f64| {
-            let (u, v) = (u * a.curve.value(*t), v * b.curve.value(*t));
-            (u - v).abs() > 1e-9 * u.abs().max(v.abs())
-        };
-        times().filter(|t| *t >= 0.0).find(differ).map(|time| (axis, time))
-    })
+    (0..2).find_map(|axis| Some((axis, boundary::supports::contradiction(a, b, axis)?)))
 }
 
 #[cfg(test)]

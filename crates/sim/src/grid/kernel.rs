@@ -146,6 +146,18 @@ impl Stencil {
         }
     }
 
+    /// The same weights, each axis carried on in a straight line by `way` [m], into a neighbouring cell if need be:
+    /// exact for the bilinear kernel.
+    pub(crate) fn carried_on(&self, way: Vector) -> Self {
+        let mut moved = *self;
+        for axis in 0..2 {
+            for (w, g) in moved.weight[axis].iter_mut().zip(&self.gradient[axis]) {
+                *w += g * way[axis];
+            }
+        }
+        moved
+    }
+
     /// Weight w_ip of node (a, b) [–].
     #[inline]
     pub(crate) fn weight(&self, a: usize, b: usize) -> f64 {

@@ -13,6 +13,7 @@
 //!
 //! A run of nodes side by side is a run of numbers, and a band with the one above it is one piece of memory.
 
+pub(crate) mod coverage;
 pub(crate) mod entries;
 pub(crate) mod fields;
 pub(crate) mod kernel;

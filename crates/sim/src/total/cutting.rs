@@ -12,12 +12,18 @@ impl Lattice {
     pub(super) fn make_entries(&mut self, particle: usize) -> Vec<Entry> {
         let (place, body) = (self.particles.rest[particle], self.particles.body[particle]);
         let stencil = self.stencil(place);
+        // Of what an outline cuts, the mean gradient is that at its centre. Its mass stays where the particle stands,
+        // or the nodes beyond a thin rest would be too light for any step.
+        let slopes = match self.particles.off_center(particle) {
+            Some(way) => stencil.carried_on(way),
+            None => stencil,
+        };
         let near = self.division.is_near(place);
         let nodes = self.grid.stencil(&stencil);
         let mut entries = Vec::with_capacity(stencil.width * stencil.width);
         for b in 0..stencil.width {
             for a in 0..stencil.width {
-                let (w, g) = (stencil.weight(a, b), stencil.weight_gradient(a, b));
+                let (w, g) = (stencil.weight(a, b), slopes.weight_gradient(a, b));
                 let Some(node) = nodes.at(a, b) else { continue };
                 let guest = self.shared.guest(node, body);
                 if !near {
@@ -41,7 +47,9 @@ impl Lattice {
     /// a tip leaves its neighbourhood again when the tip turns. A cell that went back to its row all the same would act
     /// twice.
     pub(super) fn is_whole(&self, particle: usize) -> bool {
-        self.layout.cut.entries_of(particle).is_none() && !self.division.is_near(self.particles.rest[particle])
+        self.layout.cut.entries_of(particle).is_none()
+            && !self.division.is_near(self.particles.rest[particle])
+            && self.particles.off_center(particle).is_none()
     }
 
     /// Whether all four particles of a cell are there, whole, of one material and of the body that owns all its nodes,

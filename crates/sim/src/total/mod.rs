@@ -12,9 +12,11 @@
 //! has grown ([`near::Near`]).
 
 mod colliders;
+mod constraints;
 mod contact;
 mod cut;
 mod cutting;
+mod edge_means;
 mod field_vectors;
 mod lattice;
 mod loads;
@@ -172,6 +174,7 @@ impl Total {
 
     /// Surfaces that touch, at the time `time` [s]. Whether any is near enough.
     fn touch(&mut self, cracks: &Cracks, time: f64, kick: f64, time_step: f64) -> bool {
+        let gain = motion::force_of_impulse(self.damping, kick);
         let Self { scene, lattice, motion, probes, supports, touching, external_work, .. } = self;
         let moment = Moment { scene, lattice, probes, cracks, kick, time_step };
         touching.look(&moment, motion);
@@ -179,17 +182,18 @@ impl Total {
             return false;
         }
         // What a support holds gives way to nothing.
-        supports.apply(&scene.supports, time, lattice.mass(), motion, external_work);
-        touching.resolve(&moment, &supports.held(&scene.supports, time), motion);
+        supports.apply(&scene.supports, time, gain, lattice.mass(), motion, external_work);
+        touching.resolve(&moment, supports.held(), motion);
         true
     }
 
-    /// Supports, then colliders, at the time `time` [s].
-    fn apply_boundaries(&mut self, time: f64) {
+    /// Supports, then colliders, at the time `time` [s], after a kick of `kick` [s].
+    fn apply_boundaries(&mut self, time: f64, kick: f64) {
         let mut work = 0.0;
-        let mass = self.lattice.mass();
-        self.supports.apply(&self.scene.supports, time, mass, &mut self.motion, &mut work);
-        self.colliders.apply(time, mass, &mut self.motion, &mut work);
+        let gain = motion::force_of_impulse(self.damping, kick);
+        let Self { scene, lattice, motion, .. } = self;
+        self.supports.apply(&scene.supports, time, gain, lattice.mass(), motion, &mut work);
+        self.colliders.apply(time, lattice.mass(), motion, &mut work);
         self.external_work += work;
     }
 
@@ -257,7 +261,7 @@ impl Solver for Total {
             self.resolve_contacts(kick, time_step);
         }
         let touches = self.touch(cracks, middle, kick, time_step);
-        self.apply_boundaries(middle);
+        self.apply_boundaries(middle, kick);
         if self.contacts.are_possible() && !self.colliders.is_empty() {
             self.resolve_contacts(kick, time_step);
         }

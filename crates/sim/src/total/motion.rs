@@ -27,6 +27,15 @@ pub(super) struct Motion {
     pub(super) force: FieldVectors,
 }
 
+/// What force over a kick [s], times its length, changes velocities as much as an impulse of 1, where velocities decay
+/// at the rate `damping` [1/s].
+///
+/// Damped leapfrog v' = α v + β a is stable up to ω² Δt β = 2 (1 + α): β = ½ (1 + α) Δt keeps the limit where it is
+/// without damping. A force f then changes velocities by β f/m.
+pub(super) fn force_of_impulse(damping: f64, kick: f64) -> f64 {
+    2.0 / (1.0 + (-damping * kick).exp())
+}
+
 impl Motion {
     /// So many fields at rest.
     pub(super) fn at_rest(fields: usize) -> Self {
@@ -115,9 +124,7 @@ impl Motion {
         let kick = if self.in_step { 0.5 * time_step } else { time_step };
         self.in_step = false;
         let decay = (-damping * kick).exp();
-        // Damped leapfrog v' = α v + β a is stable up to ω² Δt β = 2 (1 + α); this β keeps the limit where it is
-        // without damping.
-        let push = 0.5 * (1.0 + decay) * kick;
+        let push = kick / force_of_impulse(damping, kick);
         for axis in 0..2 {
             let g = gravity[axis];
             let (velocity, acceleration) = (&mut self.velocity[axis], &mut self.acceleration[axis]);

@@ -2,6 +2,7 @@
 
 use super::field_vectors::{FieldVectors, at};
 use super::lattice::Lattice;
+use crate::crack::division::CrossedSet;
 use crate::faces::outlines::Vertex;
 use crate::saved::{self, Fits};
 use fissure_plane::{Point, Vector};
@@ -69,8 +70,9 @@ impl Lattice {
         Probe { rest, nudged, body, entries: self.probe_entries(body, rest, nudged) }
     }
 
-    /// (field, weight) of a probe. Where a node has no material on the probe's side, the nearest particle carries the
-    /// probe along linearly instead: w_ip + ∇w_ip · (X − X_p), exact for rigid motion.
+    /// (field, weight) of a probe. Where a node has no material on the probe's side, the fields of the nearest
+    /// particle's cell are carried on to the probe instead; near a crack linearly: w_ip + ∇w_ip · (X − X_p), exact for
+    /// rigid motion.
     pub(super) fn probe_entries(&self, body: u32, rest: Point, nudged: Point) -> Vec<(u32, f64)> {
         let stencil = self.stencil(rest);
         let nodes = self.grid.stencil(&stencil);
@@ -128,6 +130,17 @@ impl Lattice {
         let Some((_, _, p)) = nearest else { return Vec::new() };
         let offset = rest - self.particles.rest[p];
         let mut entries = Vec::with_capacity(8);
+        if !self.division.is_near(self.particles.rest[p]) {
+            // What the fields of its cell are beyond it.
+            let stencil = self.stencil(self.particles.rest[p]);
+            let (nodes, beyond) = (self.grid.stencil(&stencil), stencil.carried_on(offset));
+            for (b, a) in (0..stencil.width).flat_map(|b| (0..stencil.width).map(move |a| (b, a))) {
+                let Some(node) = nodes.at(a, b) else { continue };
+                let field = self.layout.fields.find(node, self.shared.guest(node, body), &CrossedSet::new());
+                entries.extend(field.map(|field| (field as u32, beyond.weight(a, b))));
+            }
+            return entries;
+        }
         self.reader().for_each_entry(p, |field, w, g| entries.push((field as u32, w + g.dot(&offset))));
         entries
     }

@@ -5,6 +5,7 @@ mod common;
 mod contour;
 mod contract;
 mod directing;
+mod edges;
 mod plane;
 mod price;
 mod scale;

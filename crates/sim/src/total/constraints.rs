@@ -1,0 +1,213 @@
+//! Weighted means of velocities that are held at what is prescribed, by impulses that take the least kinetic energy.
+//!
+//! A constraint Σ w_f v_f = V acts on its fields by impulses λ w_f: the motion stays that of the lattice with as many
+//! fewer degrees of freedom (Lagrange multipliers). There is no stiffness to choose, and no frequency rises. λ comes
+//! from a Cholesky decomposition of W M⁻¹ Wᵀ within its envelope: constraints are in the order of their places along an
+//! edge, so that each is tied to few before it.
+
+use std::collections::BTreeMap;
+
+/// A mean of velocities along one axis that is prescribed.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Constraint {
+    /// Who prescribes it.
+    pub(super) support: u32,
+    /// (field, weight); weights add up to 1.
+    pub(super) entries: Vec<(u32, f64)>,
+}
+
+/// A constraint that says no more than those before it, but for this part of its own, is left out.
+const DEPENDENT: f64 = 1e-9;
+
+/// Constraints along one axis.
+#[derive(Debug, Clone, Default)]
+pub(super) struct ConstraintSystem {
+    /// Those of a single field each.
+    fixed: Vec<Constraint>,
+    /// The others. Fields that are fixed stand in them as if they had no end of mass.
+    means: Vec<Constraint>,
+    /// Change of velocity of each entry of each of the means by an impulse of 1 [m/kg].
+    responses: Vec<Vec<f64>>,
+    /// Cholesky factor of the means, row by row.
+    rows: Vec<EnvelopeRow>,
+}
+
+/// A row of a lower triangle from its first entry that is not zero to the diagonal.
+#[derive(Debug, Clone)]
+struct EnvelopeRow {
+    first: usize,
+    values: Vec<f64>,
+}
+
+impl EnvelopeRow {
+    fn diagonal(&self) -> f64 {
+        self.values[self.values.len() - 1]
+    }
+
+    /// Σ L_k x_k over the entries before column `end`.
+    fn dot(&self, x: &[f64], end: usize) -> f64 {
+        (self.first..end).zip(&self.values).map(|(k, l)| l * x[k]).sum()
+    }
+}
+
+impl ConstraintSystem {
+    /// Prepares `constraints` for fields of these inverse masses [m/kg]. Of several that say the same, the first ones
+    /// are kept.
+    pub(super) fn new(constraints: Vec<Constraint>, inverse_mass: &[f64]) -> Self {
+        let mut system = Self::default();
+        let mut is_fixed = BTreeMap::new();
+        for constraint in constraints.iter().filter(|c| c.entries.len() == 1) {
+            if is_fixed.insert(constraint.entries[0].0, ()).is_none() {
+                system.fixed.push(constraint.clone());
+            }
+        }
+        let mut of_field: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+        for constraint in constraints.into_iter().filter(|c| c.entries.len() > 1) {
+            let response = |&(field, w): &(u32, f64)| {
+                if is_fixed.contains_key(&field) { 0.0 } else { w * inverse_mass[field as usize] }
+            };
+            let responses: Vec<f64> = constraint.entries.iter().map(response).collect();
+            if let Some(row) = system.row(&constraint, &responses, &of_field) {
+                for &(field, _) in &constraint.entries {
+                    of_field.entry(field).or_default().push(system.means.len());
+                }
+                system.rows.push(row);
+                system.means.push(constraint);
+                system.responses.push(responses);
+            }
+        }
+        system
+    }
+
+    /// The row of one more constraint; none when it depends on those before. `of_field`: which of them have each field.
+    fn row(
+        &self,
+        constraint: &Constraint,
+        responses: &[f64],
+        of_field: &BTreeMap<u32, Vec<usize>>,
+    ) -> Option<EnvelopeRow> {
+        let count = self.means.len();
+        let own: f64 = constraint.entries.iter().zip(responses).map(|((_, w), response)| w * response).sum();
+        let tied = constraint.entries.iter().filter_map(|(field, _)| of_field.get(field)?.first());
+        let first = tied.min().copied().unwrap_or(count);
+        // What an impulse of it does to the means before it.
+        let mut x = vec![0.0; count];
+        for (&(field, _), response) in constraint.entries.iter().zip(responses) {
+            for &other in of_field.get(&field).into_iter().flatten() {
+                let entry = self.means[other].entries.iter().find(|&&(f, _)| f == field);
+                x[other] += entry.map_or(0.0, |&(_, w)| w * response);
+            }
+        }
+        for k in first..count {
+            let row = &self.rows[k];
+            let begin = row.first.max(first);
+            let known: f64 = (begin..k).map(|m| row.values[m - row.first] * x[m]).sum();
+            x[k] = (x[k] - known) / row.diagonal();
+        }
+        let left = own - x[first..].iter().map(|l| l * l).sum::<f64>();
+        let mut values = x.split_off(first);
+        values.push(left.max(0.0).sqrt());
+        (left > DEPENDENT * own).then_some(EnvelopeRow { first, values })
+    }
+
+    /// Whether nothing is held.
+    pub(super) fn is_empty(&self) -> bool {
+        self.fixed.is_empty() && self.means.is_empty()
+    }
+
+    /// The fields that it is about; some several times.
+    pub(super) fn fields(&self) -> impl Iterator<Item = u32> {
+        self.fixed.iter().chain(&self.means).flat_map(|c| c.entries.iter().map(|&(field, _)| field))
+    }
+
+    /// Makes the means what `prescribed` gives of each support [m/s]. Calls `acted` with each constraint and its
+    /// impulse [N s/m].
+    pub(super) fn apply(
+        &self,
+        prescribed: impl Fn(u32) -> f64,
+        mass: &[f64],
+        velocity: &mut [f64],
+        mut acted: impl FnMut(&Constraint, f64),
+    ) {
+        for constraint in &self.fixed {
+            let field = constraint.entries[0].0 as usize;
+            let wanted = prescribed(constraint.support);
+            acted(constraint, mass[field] * (wanted - velocity[field]));
+            velocity[field] = wanted;
+        }
+        let missing = |c: &Constraint| {
+            prescribed(c.support) - c.entries.iter().map(|&(field, w)| w * velocity[field as usize]).sum::<f64>()
+        };
+        let mut impulses: Vec<f64> = self.means.iter().map(missing).collect();
+        self.solve(&mut impulses);
+        for ((constraint, responses), &impulse) in self.means.iter().zip(&self.responses).zip(&impulses) {
+            // Of a field that is fixed nothing moves, and nothing acts on it.
+            let mut part = 0.0;
+            for (&(field, w), &response) in constraint.entries.iter().zip(responses) {
+                velocity[field as usize] += impulse * response;
+                part += if response == 0.0 { 0.0 } else { w };
+            }
+            acted(constraint, impulse * part);
+        }
+    }
+
+    /// Solves L Lᵀ x = b in place.
+    fn solve(&self, x: &mut [f64]) {
+        for (k, row) in self.rows.iter().enumerate() {
+            x[k] = (x[k] - row.dot(x, k)) / row.diagonal();
+        }
+        for (k, row) in self.rows.iter().enumerate().rev() {
+            x[k] /= row.diagonal();
+            let of_row = x[k];
+            for (m, l) in (row.first..k).zip(&row.values) {
+                x[m] -= l * of_row;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Truth: Gauss' principle. The velocities are those that fulfil all constraints, one of them given twice, and
+        /// any further change that keeps them is orthogonal to the change made, weighted with the masses.
+        #[test]
+        fn the_least_change_fulfils_all_constraints(
+            masses in prop::collection::vec(0.5..2.0_f64, 12..13),
+            before in prop::collection::vec(-1.0..1.0_f64, 12..13),
+            weights in prop::collection::vec(0.05..0.95_f64, 8..9),
+            trial in prop::collection::vec(-1.0..1.0_f64, 12..13),
+            speed in -1.0..1.0_f64,
+        ) {
+            // Chains that share fields, two fixed fields, and one constraint twice.
+            let mut constraints: Vec<Constraint> = weights
+                .iter()
+                .enumerate()
+                .map(|(k, &w)| Constraint { support: 0, entries: vec![(k as u32, w), (k as u32 + 2, 1.0 - w)] })
+                .collect();
+            constraints.push(constraints[3].clone());
+            for field in [5, 11] {
+                constraints.push(Constraint { support: 0, entries: vec![(field, 1.0)] });
+            }
+            let inverse: Vec<f64> = masses.iter().map(|m| 1.0 / m).collect();
+            let system = ConstraintSystem::new(constraints.clone(), &inverse);
+            let mut after = before.clone();
+            let mut momentum = 0.0;
+            system.apply(|_| speed, &masses, &mut after, |_, impulse| momentum += impulse);
+            let mean = |c: &Constraint, v: &[f64]| c.entries.iter().map(|&(f, w)| w * v[f as usize]).sum::<f64>();
+            for constraint in &constraints {
+                prop_assert!((mean(constraint, &after) - speed).abs() < 1e-9);
+            }
+            // The trial, brought to zero by the same constraints.
+            let mut kept = trial.clone();
+            system.apply(|_| 0.0, &masses, &mut kept, |_, _| ());
+            let product: f64 = (0..12).map(|f| masses[f] * (after[f] - before[f]) * kept[f]).sum();
+            prop_assert!(product.abs() < 1e-9, "{product}");
+            let gained: f64 = (0..12).map(|f| masses[f] * (after[f] - before[f])).sum();
+            prop_assert!((gained - momentum).abs() < 1e-9);
+        }
+    }
+}

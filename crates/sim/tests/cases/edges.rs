@@ -1,0 +1,87 @@
+//! Edges wherever they lie in a cell: what supports hold and loads pull on is the edge that was drawn.
+
+use crate::common::{YOUNG, plate};
+use fissure_scene::{Curve, Load, LoadKind, OutlineStretch, Point, Scene, Selection, Support, Vector};
+use fissure_sim::Simulation;
+use std::ops::ControlFlow;
+
+const CELL: f64 = 0.0625;
+const STRAIN: f64 = 1e-4;
+
+/// A bar without lateral contraction whose axis has the direction `angle` [rad], between its ends as they are drawn.
+struct Bar {
+    scene: Scene,
+    length: f64,
+    width: f64,
+    axis: Vector,
+    /// The end that looks along the axis, then the other one.
+    ends: [Selection; 2],
+}
+
+/// Numbers between 0 and 1 that look random: the golden ratio's multiples.
+fn scattered(k: usize) -> f64 {
+    (0.618_033_988_749_895 * (k + 1) as f64).fract()
+}
+
+fn bar(angle: f64, length: f64, width: f64) -> Bar {
+    let axis = Vector::new(angle.cos(), angle.sin());
+    let across = Vector::new(-axis.y, axis.x);
+    let corner = |a: f64, b: f64| Point::origin() + axis * (0.5 * a * length) + across * (0.5 * b * width);
+    let ring = vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+    let end =
+        |from: usize, to: usize| Selection::Outline(vec![OutlineStretch { body: 0, from: ring[from], to: ring[to] }]);
+    let ends = [end(1, 2), end(3, 0)];
+    let mut scene = plate([1.0, 1.0], CELL, 5e-3);
+    scene.bodies[0].region.exterior = ring;
+    scene.materials[0].poisson_ratio = 0.0;
+    scene.solver.damping = 2000.0;
+    scene.frames.last = 3;
+    Bar { scene, length, width, axis, ends }
+}
+
+/// Strain energy in the end over that of the bar under uniform strain, less one.
+fn error(bar: &Bar) -> f64 {
+    let mut simulation = Simulation::new(&bar.scene).unwrap();
+    while !simulation.is_finished() {
+        simulation.advance(&mut |_| ControlFlow::Continue(())).unwrap();
+    }
+    let exact = 0.5 * YOUNG * STRAIN * STRAIN * bar.length * bar.width;
+    simulation.energies().strain / exact - 1.0
+}
+
+fn moved(mut bar: Bar) -> Bar {
+    let speed = 0.5 * STRAIN * bar.length / 5e-3;
+    let curve = Curve { points: vec![(0.0, 1.0), (5e-3, 1.0), (5e-3 + 1e-9, 0.0)] };
+    for (selection, sign) in bar.ends.iter().zip([1.0, -1.0]) {
+        let v = bar.axis * (sign * speed);
+        let velocity = [Some(v.x), Some(v.y)];
+        bar.scene.supports.push(Support { selection: selection.clone(), velocity, curve: curve.clone() });
+    }
+    bar
+}
+
+fn pulled(mut bar: Bar) -> Bar {
+    for (selection, sign) in bar.ends.iter().zip([1.0, -1.0]) {
+        let kind = LoadKind::Traction(bar.axis * (sign * STRAIN * YOUNG));
+        bar.scene.loads.push(Load { selection: selection.clone(), kind, curve: Curve::default() });
+    }
+    bar
+}
+
+/// Truth: Hooke. The strain of a bar without lateral contraction is uniform, whatever its turn and wherever its ends
+/// and sides lie in their cells. Along the axes the lattice can follow that exactly. Measured at other angles: at most
+/// 0.21 % by supports and 0.25 % by loads.
+#[test]
+fn a_bar_is_strained_alike_at_any_place_and_turn() {
+    for k in 0..10 {
+        let length = CELL * (16.0 + scattered(2 * k));
+        let width = CELL * (8.0 + scattered(2 * k + 1));
+        let (angle, most) = match k {
+            0..4 => (0.5 * std::f64::consts::PI * k as f64, 1e-5),
+            _ => (6.3 * scattered(k), 3e-3),
+        };
+        let by_supports = error(&moved(bar(angle, length, width)));
+        let by_loads = error(&pulled(bar(angle, length, width)));
+        assert!(by_supports.abs() < most && by_loads.abs() < most, "{angle} rad: {by_supports} {by_loads}");
+    }
+}
