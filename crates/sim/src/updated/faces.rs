@@ -275,7 +275,14 @@ impl Faces {
         };
         let lines = cracks.lines(points, reach * scene.cell_size);
         let tip_division = scene.solver.tip_division;
-        Division::new(&lines, tip_division, TipCut::PLAIN, scene.cell_size, scene.particle_spacing, reach)
+        Division::new(
+            &lines,
+            tip_division,
+            TipCut::smooth(scene.solver.kernel),
+            scene.cell_size,
+            scene.particle_spacing,
+            reach,
+        )
     }
 
     /// Moves crack points and their faces with the material.

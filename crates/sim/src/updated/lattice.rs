@@ -105,7 +105,14 @@ impl Lattice {
             half_size: (0.5 * setup.particles.spacing / h).min(0.5),
             grid: Grid::default(),
             order: RowOrder::default(),
-            division: Division::new(&[], setup.scene.solver.tip_division, TipCut::PLAIN, h, s, 0.0),
+            division: Division::new(
+                &[],
+                setup.scene.solver.tip_division,
+                TipCut::smooth(setup.scene.solver.kernel),
+                h,
+                s,
+                0.0,
+            ),
             fields: Fields::default(),
             stencils: Entries::default(),
         }

@@ -107,7 +107,7 @@ fn pure_shear_kinks_by_seventy_degrees() {
                 simulation.relax(1e-6, 3000).unwrap();
                 let frame = simulation.frame();
                 finite("shear", &frame);
-                // A smooth kernel makes the crack act longer: 17 % more with the quadratic one.
+                // A smooth kernel makes the crack act longer: 16 % more with the quadratic one, 9 % without.
                 let most = if scene.solver.formulation == Formulation::Total { 1.1 } else { 1.2 };
                 for t in &frame.tips {
                     let ratio = sign * t.mode_2 / (STRESS * (PI * 1.4).sqrt());
@@ -123,10 +123,12 @@ fn pure_shear_kinks_by_seventy_degrees() {
 /// Truth: a crack pressed together does not open and does not grow, with contact and without.
 #[test]
 fn a_closed_crack_does_not_grow() {
-    for contact in [true, false] {
+    // Without contact the faces go through each other by .075 m. In the updated formulation material that has passed
+    // the crack belongs to its other side, so that rows of particles have to keep more than half of that from it.
+    for (contact, y) in [(true, 4.13), (true, 4.25), (false, 4.2), (false, 4.25), (false, 4.3)] {
         let mut scene = small_plate();
         scene.solver.crack_contact = contact;
-        add_crack(&mut scene, &[[0.0, 4.13], [3.1, 4.13]]);
+        add_crack(&mut scene, &[[0.0, y], [3.1, y]]);
         pull(&mut scene, -STRESS);
         for frame in both(&format!("closed {contact}"), &scene, 6) {
             let t = tip(&frame, 0, End::End);
