@@ -89,6 +89,7 @@ mod formulation;
 mod free_memory;
 mod grid;
 mod growth;
+mod loose;
 mod material;
 mod memory;
 mod particles;

@@ -5,6 +5,7 @@ use crate::boundary::selector::Selector;
 use crate::grid::coverage::Cover;
 use crate::grid::scan::Places;
 use crate::grid::spans::{Span, SpanRows};
+use crate::loose;
 use fissure_plane::{Matrix, Point, Vector, bounds};
 use fissure_scene::{KeyPath, ParticleFrame, Scene, SceneFault, Selection};
 use std::collections::BTreeMap;
@@ -42,7 +43,8 @@ const LEAST_VOLUME: f64 = 1e-3;
 const MOST_PLACES: f64 = (1 << 30) as f64;
 
 impl Particles {
-    /// Fills the bodies of `scene` with particles on one lattice; those whose centre lies inside belong to the body.
+    /// Fills the bodies of `scene` with particles on one lattice; those whose centre lies inside belong to the body,
+    /// without corners that nothing holds.
     ///
     /// Together they have the volume of the body: what lies in a square without a particle goes to the one beside.
     ///
@@ -63,9 +65,13 @@ impl Particles {
         let places = Places { anchor: low, spacing: s };
         let mut runs: Vec<(usize, i32, Range<i32>)> = Vec::new();
         for (index, body) in scene.bodies.iter().enumerate() {
-            let before = runs.len();
-            places.for_each_run_inside(&body.region, |row, columns| runs.push((index, row, columns)));
-            if runs.len() == before {
+            let mut of_body: Vec<loose::Run> = Vec::new();
+            places.for_each_run_inside(&body.region, |row, columns| of_body.push((row, columns)));
+            if s == 0.5 * scene.cell_size {
+                loose::drop_loose(&mut of_body);
+            }
+            runs.extend(of_body.iter().map(|(row, columns)| (index, *row, columns.clone())));
+            if of_body.is_empty() {
                 let message = format!("body `{}` holds no particle at a spacing of {s} m", body.name);
                 let (path, remedy) =
                     (KeyPath::item("body", index).then("shape"), "make `grid.particle_spacing` smaller");

@@ -513,6 +513,21 @@ mod tests {
         Ok(())
     }
 
+    /// Truth: balanced forces. Whatever corner lies between grid lines, nothing of a square moves on under tension.
+    #[test]
+    fn a_square_comes_to_rest_at_any_turn() -> Result<(), fissure_sim::SimulationError> {
+        let square = rectangle((0.0, 0.0), (16.0, 16.0));
+        let problem = Problem::new("square", square, linear_material(), PlaneState::Strain, 1.0)
+            .traction(BoxSide::Top, 0.0, 1e3)
+            .traction(BoxSide::Bottom, 0.0, -1e3);
+        for index in 0..36 {
+            let placement = Placement::draw(1, index);
+            let steps = crate::placed::Placed::new(&problem.scene, placement)?.relax(1e-8, 1000)?;
+            assert!(steps < 200, "{steps} steps, {placement}");
+        }
+        Ok(())
+    }
+
     fn middle(a: Point, b: Point) -> Point {
         a + (b - a) * 0.5
     }
