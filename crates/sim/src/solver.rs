@@ -98,6 +98,9 @@ pub(crate) trait Snapshot {
 
 /// A moment of a solver at which tips can be looked at.
 pub(crate) trait Observed {
+    /// Whether its zones tell how a crack is bent behind its tip.
+    fn tells_bends(&self) -> bool;
+
     /// The material within `radius` [m] of a tip.
     fn tip_zone(&self, cracks: &Cracks, id: TipId, radius: f64) -> TipZone;
 

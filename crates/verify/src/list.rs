@@ -8,6 +8,7 @@ pub const CASES: &[Case] = &[
     cases::edge_crack::CASE,
     cases::center_crack::CASE,
     cases::slanted_crack::CASE,
+    cases::drawn_kinks::CASE,
     cases::closed_crack::CASE,
     cases::double_cantilever::CASE,
     cases::crack_pairs::CASE,

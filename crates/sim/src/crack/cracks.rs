@@ -99,6 +99,11 @@ impl Cracks {
         self.of(id).ahead(id.end, over)
     }
 
+    /// Way from the end to the first kink behind it [m], if that is less than `within` [m].
+    pub(crate) fn way_to_kink(&self, id: TipId, within: f64) -> Option<f64> {
+        self.of(id).way_to_kink(id.end, within)
+    }
+
     /// Unit vector of the last segment at rest, pointing ahead of the end.
     pub(crate) fn last_direction(&self, id: TipId) -> Vector {
         self.of(id).last_direction(id.end)

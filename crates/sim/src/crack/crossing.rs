@@ -394,6 +394,8 @@ mod tests {
             .filter(|w| !apart(p, p, w[0], w[1]) && orientation(w[0], w[1], p) == 0.0)
             .map(|w| (w[1] - w[0]).normalize())
             .sum();
+        // However sharp the turn of a vertex.
+        let along = along.try_normalize(0.0).unwrap_or_default();
         p + Vector::new(-along.y, along.x) * (to * 1e-6)
     }
 

@@ -1,15 +1,17 @@
 //! Where a tip wants to go: by the stress, by a drawn path, or by both.
 
-use crate::crack::DIRECTION_LENGTH;
 use crate::crack::assessment::Assessment;
 use crate::crack::cracks::{Cracks, TipId};
+use crate::crack::{DIRECTION_LENGTH, KINK};
 use crate::material::elastic::Elastic;
 use crate::tip::frame::turned;
-use crate::tip::gauge::KINK;
 use fissure_scene::{End, Scene, TipState, Vector};
 
 /// Distance over which the direction of a running tip is averaged, in cells.
 const HEADING_CELLS: f64 = 2.0;
+
+/// Lengths that differ by less than this part of them are equal.
+const ROUND_OFF: f64 = 1e-9;
 
 /// The direction that the stress asks for now: unit vector, at rest.
 fn asked(cracks: &Cracks, id: TipId, assessed: &Assessment, scene: &Scene) -> Vector {
@@ -20,7 +22,7 @@ fn asked(cracks: &Cracks, id: TipId, assessed: &Assessment, scene: &Scene) -> Ve
 ///
 /// Every increment sends out waves, and the ratio of the modes swings with them at a period that is the lattice's, not
 /// the body's. A running tip follows the mean over the time that a shear wave takes for a few cells; a resting one has
-/// no waves of its own and starts as the stress is.
+/// no waves of its own and starts as the stress is. Both go straight on from a kink that they have made themselves.
 pub(crate) fn heading(
     cracks: &Cracks,
     id: TipId,
@@ -31,23 +33,27 @@ pub(crate) fn heading(
 ) -> Vector {
     let now = asked(cracks, id, assessed, scene);
     let Some(tip) = cracks.tip(id) else { return now };
-    if tip.state != TipState::Growing || tip.heading == Vector::zeros() {
+    if tip.heading == Vector::zeros() {
         return now;
     }
-    if let Some(direction) = after_kink(cracks, id, DIRECTION_LENGTH * scene.cell_size) {
+    if let Some(direction) = after_kink(cracks, id, DIRECTION_LENGTH * scene.cell_size, tip.grown) {
         return direction;
+    }
+    if tip.state != TipState::Growing {
+        return now;
     }
     let slowest = elastic.iter().map(Elastic::shear_wave_speed).fold(f64::INFINITY, f64::min);
     let window = HEADING_CELLS * scene.cell_size / slowest;
     tip.heading + (now - tip.heading) * (1.0 - (-time_step / window).exp())
 }
 
-/// Direction of the last segment of a crack with a kink nearer to its tip than `over` [m].
+/// Direction of the last segment of a crack with a kink nearer to its tip than `over` [m], of which the tip has made
+/// the last `grown` [m] itself: a kink that is drawn says nothing about the way from there.
 ///
 /// What is measured around such a tip is still the field of the crack before the kink, seen along a chord that has
 /// turned by a part of it. A crack that follows it turns on: under pure shear from 70 to 92° within the first cell and
 /// a half, whatever the size of the cells, before it comes back to 73°.
-fn after_kink(cracks: &Cracks, id: TipId, over: f64) -> Option<Vector> {
+fn after_kink(cracks: &Cracks, id: TipId, over: f64, grown: f64) -> Option<Vector> {
     let points = &cracks.of(id).points;
     let n = points.len();
     let at = |k: usize| if id.end == End::Start { points[k] } else { points[n - 1 - k] };
@@ -56,7 +62,7 @@ fn after_kink(cracks: &Cracks, id: TipId, over: f64) -> Option<Vector> {
     let (mut ahead, mut way) = (tip - at(1), (at(0) - at(1)).norm());
     let direction = ahead.try_normalize(0.0)?;
     for k in 2..n {
-        if way >= over {
+        if way >= over || way > grown * (1.0 + ROUND_OFF) {
             return None;
         }
         let segment = at(k - 1) - at(k);

@@ -36,7 +36,7 @@ pub(crate) struct DomainIntegrals {
 ///
 /// q = 1 − t³ (10 − 15 t + 6 t²). On exact K fields with 200 random offsets of the lattice (2×2 particles per cell, 1
 /// and 4 cells) the largest error of K is 0.1 %; a linear ramp gives 3 %, a cubic one 0.6 %.
-fn weight(place: Vector, inner: f64, outer: f64) -> (f64, Vector) {
+pub(super) fn weight(place: Vector, inner: f64, outer: f64) -> (f64, Vector) {
     let r = place.norm();
     if r <= inner {
         return (1.0, Vector::zeros());
@@ -51,10 +51,10 @@ fn weight(place: Vector, inner: f64, outer: f64) -> (f64, Vector) {
 }
 
 /// q is 1 within this radius, in cells.
-const INNER_RADIUS: f64 = 1.0;
+pub(super) const INNER_RADIUS: f64 = 1.0;
 /// Contacts so near to the tip, in cells, feel the jump of the tip's own field; those farther off that of the particles
 /// beside them.
-const OF_TIP: f64 = 1.5;
+pub(super) const OF_TIP: f64 = 1.5;
 /// Particles within this distance, in cells, tell how the jump across the crack changes.
 const JUMP_REACH: f64 = 0.75;
 
@@ -177,7 +177,7 @@ fn beside_crack(place: Vector, side: Side) -> Vector {
 /// The place of a particle of some `volume` at which the auxiliary fields stand for it: at least 0.317 √V from the tip,
 /// where 1/√r is as large as its mean over a disc of that area around the tip. At its centre it would be infinite for a
 /// particle that the tip hits.
-fn out_of_core(place: Vector, volume: f64) -> Vector {
+pub(super) fn out_of_core(place: Vector, volume: f64) -> Vector {
     let (distance, least) = (place.norm(), 0.317 * volume.sqrt());
     if distance >= least {
         place
@@ -192,8 +192,10 @@ fn out_of_core(place: Vector, volume: f64) -> Vector {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use crate::tip::bend::Bend;
+    use crate::tip::reciprocal::{Setting, reciprocal_integrals};
     use crate::tip::zone::FaceContact;
-    use fissure_scene::{Material, Matrix, PlaneState};
+    use fissure_scene::{Material, Matrix, PlaneState, Point};
 
     fn elastic(plane: PlaneState) -> Elastic {
         let material = Material {
@@ -222,6 +224,7 @@ mod tests {
                 let stress = f[0].stress * k[0] + f[1].stress * k[1] + uniform;
                 points.push(QuadraturePoint {
                     place,
+                    displacement: f[0].displacement * k[0] + f[1].displacement * k[1] + strain * place,
                     side: if place.y >= 0.0 { Side::Above } else { Side::Below },
                     volume: 0.25,
                     stress,
@@ -241,9 +244,18 @@ mod tests {
         let contacts = (-1..6).map(|i| {
             let behind = f64::from(i) - offset.x;
             let length = kink(behind + 1.0) - 2.0 * kink(behind) + kink(behind - 1.0);
-            FaceContact { behind, force: traction * length }
+            FaceContact { place: Vector::new(-behind, 0.0), behind, force: traction * length }
         });
         TipZone { points, contacts: contacts.filter(|c| c.force != Vector::zeros()).collect(), ..TipZone::default() }
+    }
+
+    /// A straight crack, as one that is bent somewhere far off.
+    fn straight() -> Bend {
+        Bend::new(vec![Point::new(-20.0, 0.0), Point::origin()])
+    }
+
+    fn setting(e: &Elastic) -> Setting<'_> {
+        Setting { elastic: std::slice::from_ref(e), tip: e, cell_size: 1.0, dynamic: true }
     }
 
     const OFFSETS: [Vector; 3] = [Vector::new(0.1, 0.2), Vector::new(0.33, -0.41), Vector::new(0.0, 0.25)];
@@ -262,6 +274,9 @@ mod tests {
                     assert!((found.mode_2 - k_2).abs() < 1.5e-3, "{found:?}");
                     assert!((found.j_integral / j - 1.0).abs() < 1.5e-3, "{found:?} {j}");
                     assert!(!found.closed, "{found:?}");
+                    let found = reciprocal_integrals(&zone, &straight(), 9.0, &setting(&e), 4.0);
+                    assert!((found.mode_1 - k_1).abs() < 1.5e-3, "{found:?}");
+                    assert!((found.mode_2 - k_2).abs() < 1.5e-3, "{found:?}");
                 }
             }
         }
@@ -279,6 +294,8 @@ mod tests {
                 assert!(found.mode_1.abs() < 0.01 && (found.mode_2 - 1.0).abs() < 0.01, "{found:?}");
                 assert!((found.j_integral * e.effective_modulus - 1.0).abs() < 0.05, "{found:?}");
                 assert!(found.closed, "{found:?}");
+                let found = reciprocal_integrals(&zone, &straight(), 9.0, &setting(&e), 4.0);
+                assert!(found.mode_1.abs() < 0.01 && (found.mode_2 - 1.0).abs() < 0.01, "{found:?}");
                 let bare = TipZone { contacts: Vec::new(), ..zone };
                 let found = domain_integrals(&bare, &[e], &e, 1.0, 4.0, true);
                 assert!(found.mode_1 < -1.0 && found.mode_2 > 1.5 && !found.closed, "{found:?}");

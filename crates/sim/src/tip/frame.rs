@@ -26,11 +26,11 @@ pub(crate) fn turned(vector: Vector, angle: f64) -> Vector {
 /// One end of a crack of which the points are at `points` now, and the direction ahead of it (unit vector); that at
 /// rest where they all coincide.
 pub(crate) fn tip_of(cracks: &Cracks, id: TipId, points: &[Point], cell_size: f64) -> (Point, Vector) {
-    let over = DIRECTION_LENGTH * cell_size;
+    let over = cracks.of(id).chord_length(id.end, DIRECTION_LENGTH * cell_size);
     let tip = if id.end == End::Start { points[0] } else { points[points.len() - 1] };
     let ahead = tip - chord_start(points, id.end, over);
     let length = ahead.norm();
-    (tip, if length > 0.0 { ahead / length } else { cracks.ahead(id, over) })
+    (tip, if length > 0.0 { ahead / length } else { cracks.ahead(id, DIRECTION_LENGTH * cell_size) })
 }
 
 /// The face of the crack through `points` that a place sees, as a side of the frame of one of its tips (`ahead`: e1):

@@ -1,6 +1,7 @@
 //! What a crack tip feels: from the material around it to J, K_I and K_II.
 
 use crate::StressIntensity;
+use crate::crack::KINK;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::crossing::Side;
 use crate::grid::kernel::axis_stencil;
@@ -8,6 +9,7 @@ use crate::material::elastic::Elastic;
 use crate::solver::Observed;
 use crate::tip::contour::{Contour, ContourHalf, ContourSample};
 use crate::tip::domain::domain_integrals;
+use crate::tip::reciprocal::{Setting, reciprocal_integrals};
 use crate::tip::zone::{QuadraturePoint, TipZone};
 use fissure_scene::{End, JMethod, Matrix, ModeSplit, Point, Scene, Vector};
 use std::convert::Infallible;
@@ -21,9 +23,10 @@ const NARROW_RADIUS: f64 = 4.0;
 /// ... and at most: its error falls with their number. K_I of edge cracks of 16 and 32 cells is off by 0.16 and 0.16 %
 /// (rms) with four cells, by 0.08 and 0.05 % with six.
 const WIDE_RADIUS: f64 = 6.0;
-/// A turn of the crack by more than this counts as a kink [rad]: over it the energy of a field along the crack is no
-/// longer that of one direction. Growth in quarter cells along a smooth path turns by less.
-pub(crate) const KINK: f64 = 0.26;
+/// Within so many cells beyond the radius a kink spoils what integrals over a straight crack say.
+const KINK_MARGIN: f64 = 1.0;
+/// A branch has a field of its own from this length on, in cells: growth by a quarter of a cell, but for round-off.
+const SHORTEST_BRANCH: f64 = 0.24;
 
 /// What the integrals around a tip give. What it means for growth is said by [`crate::growth::assess`].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -55,18 +58,16 @@ impl Gauge<'_> {
     pub(crate) fn read(&self, moment: &dyn Observed, cracks: &Cracks, id: TipId) -> Reading {
         let settings = &self.scene.solver;
         let h = self.scene.cell_size;
-        let (radius, radius_shrunk) = match settings.j_method {
-            JMethod::Domain => {
-                let room = self.free_radius(cracks, id) / h;
-                let wanted = settings.j_radius.unwrap_or((PART_OF_ROOM * room).clamp(NARROW_RADIUS, WIDE_RADIUS));
-                (wanted.min(room).max(SMALLEST_RADIUS) * h, wanted > room)
-            }
-            JMethod::Contour => (settings.j_radius.unwrap_or(NARROW_RADIUS) * h, false),
+        let (radius, radius_shrunk, kink) = match settings.j_method {
+            JMethod::Domain => self.domain_radius(moment, cracks, id),
+            JMethod::Contour => (settings.j_radius.unwrap_or(NARROW_RADIUS) * h, false, None),
         };
         // The contour takes kernel averages around its points.
         let reach = if settings.j_method == JMethod::Contour { radius + 2.0 * h } else { radius };
         let mut zone = moment.tip_zone(cracks, id, reach);
-        zone.center_on_crack(h);
+        if kink.is_none() {
+            zone.center_on_crack(h);
+        }
         zone.take_off_mean_velocity();
         let Some(nearest) = zone.points.iter().min_by(|a, b| a.place.norm_squared().total_cmp(&b.place.norm_squared()))
         else {
@@ -76,7 +77,14 @@ impl Gauge<'_> {
         let domain = |outer: f64| domain_integrals(&zone, self.elastic, elastic, h, outer, settings.area_term);
         let (j_integral, found) = match settings.j_method {
             JMethod::Domain => {
-                let found = domain(radius);
+                let found = match (kink, &zone.bend) {
+                    (Some(way), Some(bend)) => {
+                        let setting =
+                            Setting { elastic: self.elastic, tip: elastic, cell_size: h, dynamic: settings.area_term };
+                        reciprocal_integrals(&zone, bend, way, &setting, radius)
+                    }
+                    _ => domain(radius),
+                };
                 (found.j_integral, found)
             }
             JMethod::Contour => {
@@ -106,9 +114,30 @@ impl Gauge<'_> {
         }
     }
 
+    /// Radius of the domain around a tip [m], whether it is smaller than asked for, and, where the integrals have to
+    /// cope with a kink, the way to that [m].
+    fn domain_radius(&self, moment: &dyn Observed, cracks: &Cracks, id: TipId) -> (f64, bool, Option<f64>) {
+        let h = self.scene.cell_size;
+        let radius = |bends: bool| {
+            let room = self.free_radius(cracks, id, bends) / h;
+            let given = self.scene.solver.j_radius;
+            let wanted = given.unwrap_or((PART_OF_ROOM * room).clamp(NARROW_RADIUS, WIDE_RADIUS));
+            (wanted.min(room).max(SMALLEST_RADIUS) * h, wanted > room)
+        };
+        if moment.tells_bends() && self.scene.solver.mode_split == ModeSplit::Interaction {
+            let (passing, is_shrunk) = radius(false);
+            let kink = cracks.way_to_kink(id, passing + KINK_MARGIN * h);
+            if let Some(way) = kink.filter(|&way| way > SHORTEST_BRANCH * h) {
+                return (passing, is_shrunk, Some(way));
+            }
+        }
+        let (radius, is_shrunk) = radius(true);
+        (radius, is_shrunk, None)
+    }
+
     /// Distance from a tip to the nearest thing that would spoil the integral: a ring, another crack, the other end of
-    /// this one, a kink [m].
-    fn free_radius(&self, cracks: &Cracks, id: TipId) -> f64 {
+    /// this one, a bend where `bends` count [m].
+    fn free_radius(&self, cracks: &Cracks, id: TipId, bends: bool) -> f64 {
         let line = cracks.of(id);
         let tip = cracks.position(id);
         let body = &self.scene.bodies[line.body as usize];
@@ -137,7 +166,7 @@ impl Gauge<'_> {
             if distance > free {
                 break;
             }
-            if turned > KINK {
+            if bends && turned > KINK {
                 free = free.min(distance);
                 break;
             }

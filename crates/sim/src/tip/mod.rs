@@ -1,9 +1,11 @@
 //! What a crack tip feels: the material around it, and what its integrals make of that.
 
+pub(crate) mod bend;
 pub(crate) mod contour;
 pub(crate) mod domain;
 pub(crate) mod frame;
 pub(crate) mod gauge;
+mod reciprocal;
 pub(crate) mod stress_intensity;
 pub(crate) mod williams;
 pub(crate) mod zone;

@@ -3,6 +3,7 @@
 use crate::Elastic;
 use crate::tip::stress_intensity::SpeedSquares;
 use fissure_scene::{Matrix, Vector};
+use nalgebra::Complex;
 use std::f64::consts::PI;
 
 /// The field of one mode at unit stress intensity (1 Pa·√m), in the tip frame (e1 = growth direction, e2 = e1 turned by
@@ -59,6 +60,38 @@ pub fn williams_fields(place: Vector, mu: f64, kolosov: f64) -> [TipField; 2] {
 fn gradient(stress: &Matrix, rotation: f64, mu: f64, kolosov: f64) -> Matrix {
     let strain = (stress - 0.25 * (3.0 - kolosov) * stress.trace() * Matrix::identity()) / (2.0 * mu);
     strain + Matrix::new(0.0, -rotation, rotation, 0.0)
+}
+
+/// Displacement and stress of an auxiliary field of one mode.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct DualField {
+    /// U.
+    pub(crate) displacement: Vector,
+    /// S.
+    pub(crate) stress: Matrix,
+}
+
+/// The derivatives along e1 of Williams' fields of modes I and II at unit stress intensity, at `radius` [m] from the
+/// tip and at `angle` from e1 [rad], which may go on beyond ±π: the field is continued there.
+///
+/// With z = r e^(iθ), φ' = c/(2√(2πz)) of the fields, (c, s) = (1, 1) for mode I and (−i, −1) for mode II:
+/// f = φ', g = ψ' = s f − z f'; 2μ (U_1 + i U_2) = κ f − z conj(f') − conj(g);
+/// S_11 + S_22 = 4 Re f', S_22 − S_11 + 2i S_12 = 2 (conj(z) f'' + g'). Source: Muskhelishvili 1953.
+pub(crate) fn dual_fields(radius: f64, angle: f64, mu: f64, kolosov: f64) -> [DualField; 2] {
+    let z = Complex::from_polar(radius, angle);
+    let root = Complex::from_polar(0.5 / (2.0 * PI * radius).sqrt(), -0.5 * angle);
+    [(Complex::new(1.0, 0.0), 1.0), (Complex::new(0.0, -1.0), -1.0)].map(|(c, s)| {
+        let f = c * root;
+        let f_1 = -f / (z * 2.0);
+        let f_2 = -f_1 * 3.0 / (z * 2.0);
+        let g = f * s - z * f_1;
+        let g_1 = f_1 * (s - 1.0) - z * f_2;
+        let u = (f * kolosov - z * f_1.conj() - g.conj()) / (2.0 * mu);
+        let (sum, difference) = (4.0 * f_1.re, (z.conj() * f_2 + g_1) * 2.0);
+        let (s_11, s_22) = (0.5 * (sum - difference.re), 0.5 * (sum + difference.re));
+        let s_12 = 0.5 * difference.im;
+        DualField { displacement: Vector::new(u.re, u.im), stress: Matrix::new(s_11, s_12, s_12, s_22) }
+    })
 }
 
 /// Modes I and II of a tip that moves steadily along e1 at `speed` [m/s], at `place` [m] from the tip, in its frame.
@@ -243,6 +276,26 @@ mod tests {
                     .map(|(upper, lower)| upper.displacement - lower.displacement)
                     .collect();
                 assert!(jump[0].y > 0.0 && jump[0].x.abs() < 1e-10 && jump[1].x > 0.0 && jump[1].y.abs() < 1e-10);
+            }
+        }
+    }
+
+    /// Truth: the difference quotient, and a turn by 2π, after which a field with √z has changed its sign.
+    #[test]
+    fn dual_fields_are_the_slopes_of_williams_fields() {
+        let m = elastic(0.3, PlaneState::Strain);
+        let fields = |x: Vector| williams_fields(x, m.mu, m.kolosov);
+        for x in places() {
+            let (radius, angle) = (x.norm(), x.y.atan2(x.x));
+            for turns in [-1.0, 0.0, 1.0] {
+                let sign = if turns == 0.0 { 1.0 } else { -1.0 };
+                let found = dual_fields(radius, angle + 2.0 * PI * turns, m.mu, m.kolosov);
+                for mode in 0..2 {
+                    let by_x = fields(x)[mode].displacement_gradient.column(0) * sign;
+                    assert!((found[mode].displacement - by_x).norm() < 1e-12, "{x} {mode}");
+                    let stress = central(|y| fields(y)[mode].stress, x, 0) * sign;
+                    assert!((found[mode].stress - stress).norm() < 1e-8 * (1.0 + stress.norm()), "{x} {mode}");
+                }
             }
         }
     }

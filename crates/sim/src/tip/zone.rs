@@ -1,5 +1,6 @@
 //! The material around a crack tip, as an integral sees it.
 
+use super::bend::Bend;
 use crate::crack::crossing::Side;
 use fissure_scene::{Matrix, Vector};
 
@@ -14,6 +15,8 @@ pub(crate) struct TipZone {
     pub(crate) points: Vec<QuadraturePoint>,
     /// What the faces behind the tip do to each other.
     pub(crate) contacts: Vec<FaceContact>,
+    /// The crack behind the tip, where it has a kink near; none where it has not, and in the updated formulation.
+    pub(crate) bend: Option<Bend>,
     /// Opening (x_left − x_right) in the tip frame, taken behind the tip: (sliding, opening) [m]. Left is the +e2 side.
     pub(crate) opening: Vector,
     /// Distance behind the tip at which the opening was taken [m].
@@ -58,7 +61,9 @@ impl TipZone {
 /// What the faces of a crack do to each other around one place behind a tip.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FaceContact {
-    /// Distance behind the tip [m]; below zero ahead of it.
+    /// The place [m].
+    pub(crate) place: Vector,
+    /// Its distance behind the tip [m]; below zero ahead of it.
     pub(crate) behind: f64,
     /// Force per unit thickness on the face on the +e2 side, in the tip frame [N/m]. The other one feels the opposite.
     pub(crate) force: Vector,
@@ -69,6 +74,8 @@ pub(crate) struct FaceContact {
 pub(crate) struct QuadraturePoint {
     /// Place (ξ, η) [m].
     pub(crate) place: Vector,
+    /// Displacement, but for a shift that all points have in common [m].
+    pub(crate) displacement: Vector,
     /// Face of the crack the point sees behind the tip: `Above` is the +e2 side *of the tip frame*. Decided by the
     /// crack line, not by the sign of η.
     pub(crate) side: Side,

@@ -10,6 +10,7 @@ use crate::crack::DIRECTION_LENGTH;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::crossing::Side;
 use crate::solver::Observed;
+use crate::tip::bend::Bend;
 use crate::tip::frame::{side_of, tip_of, turn};
 use crate::tip::zone::{FaceContact, QuadraturePoint, TipZone};
 use fissure_plane::{Matrix, Point, Vector};
@@ -31,6 +32,10 @@ pub(super) struct Look<'a> {
 }
 
 impl Observed for Look<'_> {
+    fn tells_bends(&self) -> bool {
+        true
+    }
+
     fn tip_zone(&self, cracks: &Cracks, id: TipId, radius: f64) -> TipZone {
         let Self { lattice, motion, .. } = *self;
         let particles = &lattice.particles;
@@ -63,10 +68,11 @@ impl Observed for Look<'_> {
             let e = lattice.material(p);
             let arm = particles.rest[p] - tip;
             let into = |m: Matrix| frame * m * frame.transpose();
-            let ParticleRates { velocity, velocity_gradient, acceleration } = reader.rates(p, motion);
+            let ParticleRates { displacement, velocity, velocity_gradient, acceleration } = reader.rates(p, motion);
             let velocity = velocity - acceleration * self.half_step;
             points.push(QuadraturePoint {
                 place: frame * arm,
+                displacement: frame * (back * displacement + back_minus_one * arm),
                 side: side_of(&line.points, id.end, ahead, particles.rest[p]),
                 volume: particles.volume[p],
                 stress: into(back * crate::first_piola_stress(&h, e.mu, e.lambda)),
@@ -87,9 +93,18 @@ impl Observed for Look<'_> {
             .forces(id.crack, lattice)
             // Elsewhere the crack may have come back behind the tip.
             .filter(|(place, _)| (place - tip).norm() < radius + 2.0 * lattice.grid.cell_size)
-            .map(|(place, force)| FaceContact { behind: (tip - place).dot(&ahead), force: into * force * sign })
+            .map(|(place, force)| {
+                let place = frame * (place - tip);
+                FaceContact { place, behind: -place.x, force: into * force * sign }
+            })
             .collect();
-        TipZone { points, contacts, opening, opening_distance }
+        let beyond = radius + 2.0 * lattice.grid.cell_size;
+        let has_kink = cracks.way_to_kink(id, beyond).is_some();
+        let bend = has_kink.then(|| {
+            let behind = line.behind(id.end, beyond);
+            Bend::new(behind.into_iter().rev().map(|place| Point::from(frame * (place - tip))).collect())
+        });
+        TipZone { points, contacts, bend, opening, opening_distance }
     }
 
     fn tip_now(&self, cracks: &Cracks, id: TipId) -> (Point, Vector) {

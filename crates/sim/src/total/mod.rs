@@ -391,6 +391,10 @@ impl SlidingTips for Total {
 
 /// Between two steps.
 impl Observed for Total {
+    fn tells_bends(&self) -> bool {
+        true
+    }
+
     fn tip_zone(&self, cracks: &Cracks, id: TipId, radius: f64) -> TipZone {
         self.look(0.0).tip_zone(cracks, id, radius)
     }

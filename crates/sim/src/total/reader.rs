@@ -28,6 +28,8 @@ pub(super) struct ParticleMotion {
 /// How fast a particle moves.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ParticleRates {
+    /// Displacement [m].
+    pub(super) displacement: Vector,
     /// Velocity [m/s].
     pub(super) velocity: Vector,
     /// Its gradient [1/s].
@@ -93,15 +95,17 @@ impl<'a> Reader<'a> {
         ParticleMotion { displacement, velocity, strain: gradient + self.lattice.layout.cut.misfit_of(particle) }
     }
 
-    /// Velocity, its gradient, and acceleration of a particle.
+    /// Displacement, velocity, its gradient, and acceleration of a particle.
     pub(super) fn rates(&mut self, particle: usize, fields: &Motion) -> ParticleRates {
         let mut rates = ParticleRates {
+            displacement: Vector::zeros(),
             velocity: Vector::zeros(),
             velocity_gradient: Matrix::zeros(),
             acceleration: Vector::zeros(),
         };
         self.for_each_entry(particle, |field, w, g| {
             let v = fields.velocity(field);
+            rates.displacement += fields.displacement(field) * w;
             rates.velocity += v * w;
             add_outer(&mut rates.velocity_gradient, v, g);
             rates.acceleration += at(&fields.acceleration, field) * w;

@@ -21,6 +21,10 @@ pub(super) struct MidStep<'a> {
 const OPENING_DISTANCE: f64 = 1.5;
 
 impl Observed for MidStep<'_> {
+    fn tells_bends(&self) -> bool {
+        false
+    }
+
     fn tip_zone(&self, cracks: &Cracks, id: TipId, radius: f64) -> TipZone {
         self.solver.zone(cracks, id, radius, Some(self.time_step))
     }
@@ -32,6 +36,10 @@ impl Observed for MidStep<'_> {
 
 /// Between steps there is no grid: velocities are those of the particles, accelerations those of the last step.
 impl Observed for Updated {
+    fn tells_bends(&self) -> bool {
+        false
+    }
+
     fn tip_zone(&self, cracks: &Cracks, id: TipId, radius: f64) -> TipZone {
         self.zone(cracks, id, radius, None)
     }
@@ -47,6 +55,8 @@ struct TipAxes {
     id: TipId,
     /// [m].
     tip: Point,
+    /// [m].
+    tip_at_rest: Point,
     /// Unit vector.
     ahead: Vector,
     /// From the world into the frame of the tip.
@@ -58,7 +68,8 @@ impl Updated {
     /// surroundings of the tip are: a turn of the whole body then leaves no gradient.
     fn zone(&self, cracks: &Cracks, id: TipId, radius: f64, time_step: Option<f64>) -> TipZone {
         let (tip, ahead) = self.tip_now(cracks, id);
-        let axes = TipAxes { id, tip, ahead, frame: Matrix::new(ahead.x, ahead.y, -ahead.y, ahead.x) };
+        let tip_at_rest = cracks.position(id);
+        let axes = TipAxes { id, tip, tip_at_rest, ahead, frame: Matrix::new(ahead.x, ahead.y, -ahead.y, ahead.x) };
         let mut found: Vec<(usize, Matrix)> = Vec::new();
         let mut mean = Matrix::zeros();
         for (p, point) in self.points.point.iter().enumerate() {
@@ -76,7 +87,7 @@ impl Updated {
         let wanted = OPENING_DISTANCE * self.setup.scene.cell_size;
         let (opening, opening_distance) = self.faces.cracks[id.crack].opening(id.end, wanted);
         let contacts = self.contacts_around(&axes, radius);
-        TipZone { points, contacts, opening: axes.frame * opening, opening_distance }
+        TipZone { points, contacts, bend: None, opening: axes.frame * opening, opening_distance }
     }
 
     /// A particle with H = `h` in the frame of a tip whose surroundings have `turned` by (R, R − I).
@@ -99,6 +110,8 @@ impl Updated {
         let elastic = &point.elastic_gradient;
         QuadraturePoint {
             place: frame * (point.position - axes.tip),
+            displacement: frame
+                * (point.position - axes.tip - turned.0 * (particles.rest[particle] - axes.tip_at_rest)),
             side: side_of(&self.faces.cracks[axes.id.crack].position, axes.id.end, axes.ahead, point.position),
             volume: particles.volume[particle] * ratio,
             stress: into(crate::kirchhoff_stress(elastic, mu, lambda) / ratio),
@@ -133,9 +146,9 @@ impl Updated {
             .face_forces(&self.lattice, axes.id.crack)
             // Elsewhere the crack may have come back behind the tip.
             .filter(|(place, _)| (place - axes.tip).norm() < radius + 2.0 * self.setup.scene.cell_size)
-            .map(|(place, force)| FaceContact {
-                behind: (axes.tip - place).dot(&axes.ahead),
-                force: Vector::new((axes.frame * force).x * sign, 0.0),
+            .map(|(place, force)| {
+                let place = axes.frame * (place - axes.tip);
+                FaceContact { place, behind: -place.x, force: Vector::new((axes.frame * force).x * sign, 0.0) }
             })
             .collect()
     }

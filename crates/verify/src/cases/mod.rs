@@ -9,6 +9,7 @@ pub(crate) mod closed_crack;
 pub(crate) mod crack_motion;
 pub(crate) mod crack_pairs;
 pub(crate) mod double_cantilever;
+pub(crate) mod drawn_kinks;
 pub(crate) mod edge_crack;
 pub(crate) mod free_flight;
 pub(crate) mod impacted_notch;

@@ -1,0 +1,134 @@
+//! The crack behind a tip, where it is bent.
+
+use crate::crack::crossing::{Side, side_of_crack};
+use fissure_plane::{Point, Vector, nearest_on_segment};
+use std::f64::consts::TAU;
+
+/// A crack behind its tip, in the frame of the tip.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Bend {
+    /// Its points, towards the tip, which is the last one and lies at the origin [m].
+    line: Vec<Point>,
+    /// Way from each point to the tip [m].
+    way: Vec<f64>,
+}
+
+/// A place on a crack.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Foot {
+    pub(crate) place: Point,
+    /// Way to the tip [m].
+    pub(crate) way: f64,
+    /// Segment it lies on.
+    segment: usize,
+}
+
+/// A short stretch of a crack.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stretch {
+    /// Its middle.
+    pub(crate) foot: Foot,
+    /// Its length [m].
+    pub(crate) length: f64,
+    /// Unit vector along it, towards the tip.
+    pub(crate) toward: Vector,
+}
+
+/// A place so near the crack [m/m of its distance from the tip] lies on it.
+const ON_CRACK: f64 = 1e-9;
+
+impl Bend {
+    /// The crack through `line`, towards its tip.
+    pub(crate) fn new(line: Vec<Point>) -> Self {
+        let mut way = vec![0.0; line.len()];
+        for k in (1..line.len()).rev() {
+            way[k - 1] = way[k] + (line[k] - line[k - 1]).norm();
+        }
+        Self { line, way }
+    }
+
+    /// The place on the crack nearest to `place`.
+    pub(crate) fn foot(&self, place: Point) -> Foot {
+        let tip = Foot { place: Point::origin(), way: 0.0, segment: self.line.len().saturating_sub(2) };
+        let mut nearest = (place.coords.norm_squared(), tip);
+        for (segment, w) in self.line.windows(2).enumerate() {
+            let foot = nearest_on_segment(w[0], w[1], place);
+            let distance = (place - foot).norm_squared();
+            if distance < nearest.0 {
+                let way = self.way[segment + 1] + (w[1] - foot).norm();
+                nearest = (distance, Foot { place: foot, way, segment });
+            }
+        }
+        nearest.1
+    }
+
+    /// The face that a place sees, left (above) or right; none where nothing of the crack is nearer than the tip. A
+    /// place on the crack is on its `own` side.
+    pub(crate) fn side(&self, place: Point, own: Side) -> Option<Side> {
+        let foot = self.foot(place);
+        if foot.way <= 0.0 {
+            return None;
+        }
+        let is_on = (place - foot.place).norm() < ON_CRACK * place.coords.norm();
+        Some(if is_on { own } else { side_of_crack(&self.line, foot.segment, place) })
+    }
+
+    /// Angle from e1 to a place, turned to without crossing the crack: left of it above 0, right of it below [rad].
+    pub(crate) fn angle(place: Point, side: Option<Side>) -> f64 {
+        let angle = place.y.atan2(place.x);
+        match side {
+            Some(Side::Above) if angle < 0.0 => angle + TAU,
+            Some(Side::Below) if angle > 0.0 => angle - TAU,
+            _ => angle,
+        }
+    }
+
+    /// Stretches of at most `longest` [m] that the crack is made of, from `nearest` to the tip [m] on.
+    pub(crate) fn stretches(&self, nearest: f64, longest: f64) -> impl Iterator<Item = Stretch> {
+        self.line.windows(2).enumerate().flat_map(move |(segment, w)| {
+            let (near, far) = (self.way[segment + 1].max(nearest), self.way[segment].max(nearest));
+            let pieces = ((far - near) / longest - 1e-9).ceil().max(0.0);
+            let (length, toward) = ((far - near) / pieces.max(1.0), (w[1] - w[0]).normalize());
+            let end = (w[1], self.way[segment + 1]);
+            (0..pieces as u32).map(move |k| {
+                let way = near + (f64::from(k) + 0.5) * length;
+                Stretch { foot: Foot { place: end.0 - toward * (way - end.1), way, segment }, length, toward }
+            })
+        })
+    }
+
+    /// The place at a `way` from the tip [m]; the last one where the crack is shorter.
+    pub(crate) fn at(&self, way: f64) -> Point {
+        let Some(segment) = (1..self.line.len()).rev().find(|&k| self.way[k - 1] >= way) else {
+            return self.line.first().copied().unwrap_or_default();
+        };
+        let (from, to) = (self.line[segment - 1], self.line[segment]);
+        to + (from - to).normalize() * (way - self.way[segment])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    /// Truth: the drawing. A crack along the x axis whose parent comes from below, so that above the parent's line and
+    /// left of the kink is still left of the crack, though more than half a turn away.
+    #[test]
+    fn an_angle_goes_round_the_tip_and_not_through_the_crack() {
+        let bend = Bend::new(vec![Point::new(-2.0, -2.0), Point::new(-1.0, 0.0), Point::origin()]);
+        let angle = |x: f64, y: f64| {
+            let place = Point::new(x, y);
+            Bend::angle(place, bend.side(place, Side::Above))
+        };
+        assert!((angle(1.0, 1.0) - 0.25 * PI).abs() < 1e-14 && (angle(1.0, -1.0) + 0.25 * PI).abs() < 1e-14);
+        assert!((angle(-2.0, 0.0) - PI).abs() < 1e-14 && (angle(-2.0, -1.0) - PI - 0.5_f64.atan()).abs() < 1e-14);
+        assert!((angle(-1.0, -1.0) + 0.75 * PI).abs() < 1e-14 && (angle(-0.5, 0.0) - PI).abs() < 1e-14);
+        let length: f64 = bend.stretches(0.3, 0.1).map(|s| s.length).sum();
+        assert!((length - (0.7 + 5.0_f64.sqrt())).abs() < 1e-14);
+        for stretch in bend.stretches(0.0, 0.25) {
+            assert!((bend.at(stretch.foot.way) - stretch.foot.place).norm() < 1e-14);
+            assert!((bend.foot(stretch.foot.place).way - stretch.foot.way).abs() < 1e-14);
+        }
+    }
+}
