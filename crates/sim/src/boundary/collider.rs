@@ -132,6 +132,21 @@ impl PlacedObstacle<'_> {
         Surface { normal: self.to_world(surface.normal), ..surface }
     }
 
+    /// As [`PlacedObstacle::surface`], of that part of the surface that faces what has the `outward` normal; none where
+    /// nothing does.
+    ///
+    /// Two faces of a crack may lie where an obstacle between them is nearest to one of its sides from both.
+    pub(crate) fn surface_facing(&self, point: Point, outward: Vector) -> Option<Surface> {
+        let nearest = self.surface(point);
+        if nearest.normal.dot(&outward) < 0.0 {
+            return Some(nearest);
+        }
+        let Outline::Ring { region, .. } = &self.obstacle.outline else { return None };
+        let local = Point::from(self.to_local(point - self.pose.position));
+        let found = facing_edge(&region.exterior, local, self.to_local(outward))?;
+        Some(Surface { normal: self.to_world(found.normal), ..found })
+    }
+
     /// The surface point nearest to `point` when that is inside the obstacle or on its surface.
     pub(crate) fn contact(&self, point: Point) -> Option<Surface> {
         let local = Point::from(self.to_local(point - self.pose.position));
@@ -151,7 +166,11 @@ impl PlacedObstacle<'_> {
     /// (thesis eq. 11), separate only when approaching (v_n < 0); the tangential part then loses up to friction · |v_n|
     /// (Coulomb; Stomakhin et al. 2013, section 8). Slip holds material that wants to leave, without friction.
     pub(crate) fn resolve(&self, velocity: Vector, point: Point) -> Vector {
-        let Some(Surface { normal, .. }) = self.contact(point) else { return velocity };
+        self.contact(point).map_or(velocity, |surface| self.resolve_at(velocity, point, surface.normal))
+    }
+
+    /// As [`PlacedObstacle::resolve`], of material that touches the surface at `point` where its normal is `normal`.
+    pub(crate) fn resolve_at(&self, velocity: Vector, point: Point, normal: Vector) -> Vector {
         let own = self.velocity(point);
         let relative = velocity - own;
         let approach = -relative.dot(&normal);
@@ -194,6 +213,25 @@ impl Outline {
     }
 }
 
+/// The nearest edge of the counter-clockwise `ring` above or below which `point` lies, of those whose outward normals
+/// are against `outward`: the distance from its line and its normal.
+fn facing_edge(ring: &[Point], point: Point, outward: Vector) -> Option<Surface> {
+    let mut nearest: Option<Surface> = None;
+    for i in 0..ring.len() {
+        let (a, along) = (ring[i], ring[(i + 1) % ring.len()] - ring[i]);
+        let Some(normal) = Vector::new(along.y, -along.x).try_normalize(0.0) else { continue };
+        let share = (point - a).dot(&along) / along.norm_squared();
+        if normal.dot(&outward) >= 0.0 || !(0.0..=1.0).contains(&share) {
+            continue;
+        }
+        let distance = (point - a).dot(&normal);
+        if nearest.is_none_or(|n| distance.abs() < n.distance.abs()) {
+            nearest = Some(Surface { distance, normal });
+        }
+    }
+    nearest
+}
+
 /// Outward unit normal of the edge of the counter-clockwise `ring` that is nearest to `point`.
 fn nearest_edge_normal(ring: &[Point], point: Point) -> Vector {
     let mut nearest = (f64::INFINITY, Vector::y());
@@ -229,6 +267,24 @@ mod tests {
 
     fn resting(shape: ColliderShape) -> Obstacle {
         collider(shape, Contact::Separate, 0.0, vec![(0.0, pose(0.0, 0.0, 0.0))])
+    }
+
+    /// Truth: the drawing. Of a wedge between two faces the upper face sees the upper flank, the lower one the lower,
+    /// at its middle and off it alike.
+    #[test]
+    fn each_face_sees_the_flank_that_faces_it() {
+        let ring = [[0.0, 0.0], [4.0, -1.0], [4.0, 1.0]].map(Point::from).to_vec();
+        let wedge = resting(ColliderShape::Polygon { ring });
+        let flank = Vector::new(-1.0, 4.0).normalize();
+        for y in [-0.2, 0.0, 0.1] {
+            let place = Point::new(3.0, y);
+            let above = wedge.at(0.0).surface_facing(place, -Vector::y()).unwrap();
+            let below = wedge.at(0.0).surface_facing(place, Vector::y()).unwrap();
+            let depth = |y: f64| (0.75 - y) * flank.y;
+            assert!((above.normal - flank).norm() < 1e-12 && (above.distance + depth(y)).abs() < 1e-12);
+            assert!((below.normal - Vector::new(flank.x, -flank.y)).norm() < 1e-12);
+            assert!((below.distance + depth(-y)).abs() < 1e-12);
+        }
     }
 
     /// A C, open to the right: its hull contains the notch, it does not.

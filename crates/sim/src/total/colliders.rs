@@ -4,7 +4,7 @@ use super::lattice::Lattice;
 use super::motion::Motion;
 use super::near::Near;
 use crate::boundary::collider::Obstacle;
-use fissure_plane::Point;
+use fissure_plane::{Matrix, Point, Vector};
 use fissure_scene::Scene;
 use std::collections::BTreeMap;
 
@@ -16,6 +16,51 @@ struct SurfaceNode {
     place: Point,
     /// How far the material goes beyond the node towards an obstacle [m]; negative when it ends before it.
     reach: f64,
+    /// Beside a crack: which way is out of the material.
+    face: Option<Face>,
+}
+
+/// A face of a crack at a node.
+#[derive(Debug, Clone, Copy)]
+struct Face {
+    /// Out of the material at rest, of any length.
+    outward: Vector,
+    /// The particle that has the largest part of itself at the node, which says how the material has turned.
+    particle: u32,
+}
+
+/// What particles have at a field.
+#[derive(Debug, Clone, Copy, Default)]
+struct Filling {
+    /// Volume per unit thickness [m²].
+    volume: f64,
+    /// ∫ ∇w dV over the material, by Gauss' theorem that of the outward normal times w over its border [m].
+    outward: Vector,
+    particle: u32,
+    largest: f64,
+}
+
+impl Filling {
+    fn add(&mut self, particle: usize, volume: f64, weight: f64, gradient: Vector) {
+        self.volume += volume * weight;
+        self.outward += gradient * volume;
+        if weight > self.largest {
+            (self.largest, self.particle) = (weight, particle as u32);
+        }
+    }
+
+    /// The surface node of a field with this.
+    fn surface_node(&self, lattice: &Lattice, field: usize, place: Point) -> Option<SurfaceNode> {
+        let h = lattice.grid.cell_size;
+        let found = surface_node(field, place, self.volume / (h * h), h)?;
+        let node = lattice.fields().node(field);
+        let guest = lattice.fields().guest(field);
+        let is_divided = lattice.fields().of(node).iter().any(|&other| {
+            lattice.fields().guest(other as usize) == guest && !lattice.fields().crossed(other as usize).is_empty()
+        });
+        let face = is_divided.then_some(Face { outward: self.outward, particle: self.particle });
+        Some(SurfaceNode { face, ..found })
+    }
 }
 
 /// The surface node of a field whose hat is filled with material to the given part; none within the material and far
@@ -28,7 +73,7 @@ fn surface_node(field: usize, place: Point, part: f64, h: f64) -> Option<Surface
     // solved for d.
     let beyond = |x: f64| h * (1.0 - (1.0 - x).max(0.0).sqrt());
     let reach = if part >= 0.5 { beyond(2.0 * part - 1.0) } else { -beyond(1.0 - 2.0 * part) };
-    Some(SurfaceNode { field: field as u32, place, reach })
+    Some(SurfaceNode { field: field as u32, place, reach, face: None })
 }
 
 /// The obstacles of the scene and what they can touch.
@@ -56,45 +101,61 @@ impl Colliders {
         if self.is_empty() {
             return;
         }
-        let h = lattice.grid.cell_size;
         self.surface.retain(|s| !near.contains(s.place));
         // Every particle that has a weight at a node in the boxes, in the order of their numbers.
         let mut particles: Vec<usize> = Vec::new();
-        for (low, high) in near.widened(2.0 * h) {
+        for (low, high) in near.widened(2.0 * lattice.grid.cell_size) {
             particles.extend(lattice.particles.in_box(low, high));
         }
         particles.sort_unstable();
         particles.dedup();
-        let mut volume = BTreeMap::<usize, f64>::new();
+        let mut fillings = BTreeMap::<usize, Filling>::new();
         let mut reader = lattice.reader();
         for p in particles {
-            reader.for_each_entry(p, |field, w, _| {
+            reader.for_each_entry(p, |field, w, g| {
                 if near.contains(lattice.position(field)) {
-                    *volume.entry(field).or_default() += lattice.particles.volume[p] * w;
+                    fillings.entry(field).or_default().add(p, lattice.particles.volume[p], w, g);
                 }
             });
         }
-        let of = |(&field, v): (&usize, &f64)| surface_node(field, lattice.position(field), v / (h * h), h);
-        self.surface.extend(volume.iter().filter_map(of));
+        let of = |(&field, filling): (&usize, &Filling)| filling.surface_node(lattice, field, lattice.position(field));
+        self.surface.extend(fillings.iter().filter_map(of));
         self.surface.sort_unstable_by_key(|s| s.field);
     }
 
     /// Keeps the surface out of the obstacles where they are at the time `time` [s]. Adds the work of a step to `work`
     /// [J/m].
-    pub(super) fn apply(&self, time: f64, mass: &[f64], motion: &mut Motion, work: &mut f64) {
+    pub(super) fn apply(&self, time: f64, lattice: &Lattice, motion: &mut Motion, work: &mut f64) {
+        let mass = lattice.mass();
         for obstacle in &self.obstacles {
             let placed = obstacle.at(time);
             for node in &self.surface {
                 let d = node.field as usize;
                 let place = node.place + motion.displacement(d);
-                let found = placed.surface(place);
+                let mut found = placed.surface(place);
                 if found.distance > node.reach {
                     continue;
+                }
+                if let Some(face) = node.face {
+                    let turn = deformation_gradient(lattice, face.particle as usize, motion);
+                    // Normals go with the cofactors of F.
+                    let outward = Vector::new(
+                        turn.m22 * face.outward.x - turn.m21 * face.outward.y,
+                        turn.m11 * face.outward.y - turn.m12 * face.outward.x,
+                    );
+                    match placed.surface_facing(place, outward) {
+                        Some(facing) if facing.distance <= node.reach => found = facing,
+                        _ => continue,
+                    }
                 }
                 let before = motion.velocity(d);
                 // Where the material itself ends, which is what touches.
                 let skin = place - found.normal * node.reach;
-                let after = placed.resolve(before, skin);
+                let after = if node.face.is_some() {
+                    placed.resolve_at(before, skin, found.normal)
+                } else {
+                    placed.resolve(before, skin)
+                };
                 let impulse = (after - before) * mass[d];
                 *work += impulse.dot(&placed.velocity(place));
                 motion.velocity[0][d] = after.x;
@@ -105,12 +166,18 @@ impl Colliders {
 }
 
 fn surface_nodes(lattice: &Lattice) -> Vec<SurfaceNode> {
-    let h = lattice.grid.cell_size;
-    let mut volume = vec![0.0; lattice.field_count()];
+    let mut fillings = vec![Filling::default(); lattice.field_count()];
     let mut reader = lattice.reader();
     for p in 0..lattice.particles.len() {
-        reader.for_each_entry(p, |field, w, _| volume[field] += lattice.particles.volume[p] * w);
+        reader.for_each_entry(p, |field, w, g| fillings[field].add(p, lattice.particles.volume[p], w, g));
     }
-    let fields = volume.iter().zip(lattice.places_of_fields()).enumerate();
-    fields.filter_map(|(field, (v, place))| surface_node(field, lattice.grid.place(place), v / (h * h), h)).collect()
+    let fields = fillings.iter().zip(lattice.places_of_fields()).enumerate();
+    let of = |(field, (filling, place)): (usize, (&Filling, [i32; 2]))| {
+        filling.surface_node(lattice, field, lattice.grid.place(place))
+    };
+    fields.filter_map(of).collect()
+}
+
+fn deformation_gradient(lattice: &Lattice, particle: usize, motion: &Motion) -> Matrix {
+    Matrix::identity() + lattice.reader().gradient(particle, &motion.displacement)
 }

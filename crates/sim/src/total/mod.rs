@@ -193,7 +193,7 @@ impl Total {
         let gain = motion::force_of_impulse(self.damping, kick);
         let Self { scene, lattice, motion, .. } = self;
         self.supports.apply(&scene.supports, time, gain, lattice.mass(), motion, &mut work);
-        self.colliders.apply(time, lattice.mass(), motion, &mut work);
+        self.colliders.apply(time, lattice, motion, &mut work);
         self.external_work += work;
     }
 
