@@ -2,7 +2,7 @@
 
 use crate::curve::Curve;
 use crate::frame::{End, Pose};
-use crate::settings::{FrameSettings, GrowthSettings, OutputSettings, PlaneState, SolverSettings};
+use crate::settings::{ContactSettings, FrameSettings, GrowthSettings, OutputSettings, PlaneState, SolverSettings};
 use crate::toughness::ToughnessPatch;
 use fissure_plane::{Point, Region, Vector};
 use serde::{Deserialize, Serialize};
@@ -38,6 +38,8 @@ pub struct Scene {
     pub cell_size: f64,
     /// Solver.
     pub solver: SolverSettings,
+    /// What bodies and fragments do to each other.
+    pub contact: ContactSettings,
     /// Growth of cracks.
     pub growth: GrowthSettings,
     /// Frames.

@@ -155,6 +155,34 @@ pub struct SolverSettings {
     pub mode_split: ModeSplit,
 }
 
+/// What bodies and fragments do to each other where they touch, complete.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct ContactSettings {
+    /// Coulomb friction between surfaces; infinite: stick.
+    #[serde(with = "crate::infinite")]
+    pub friction: f64,
+    /// Pairs of materials with a friction of their own; of two that name the same pair the later one holds.
+    pub pairs: Vec<PairFriction>,
+}
+
+/// Friction between two materials.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PairFriction {
+    /// Indices of the materials, in any order; may be equal.
+    pub materials: [usize; 2],
+    /// Coulomb friction; infinite: stick.
+    #[serde(with = "crate::infinite")]
+    pub friction: f64,
+}
+
+impl ContactSettings {
+    /// Coulomb friction between surfaces of two materials, given by their indices.
+    pub fn friction_between(&self, first: usize, second: usize) -> f64 {
+        let is_pair = |pair: &&PairFriction| pair.materials == [first, second] || pair.materials == [second, first];
+        self.pairs.iter().rev().find(is_pair).map_or(self.friction, |pair| pair.friction)
+    }
+}
+
 /// When and where cracks grow, complete.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GrowthSettings {

@@ -99,6 +99,9 @@ shape = {{ polygon = [[20, 0], [22, 0], [22, 2], [20, 2]] }}
 [[load]]
 select = {{ near = [[0, 0]], radius = 1 }}
 per_point = [{{ at = [0, 0], force = [1, 0] }}]
+[contact]
+friction = 0.3
+pairs = [{{ materials = ["glass", "snow"], friction = inf }}]
 [[support]]
 select = {{ edge = "left", body = "plate" }}
 fix = "x"
@@ -119,6 +122,11 @@ velocity = [0, 1]
     assert_eq!(scene.colliders[1].keyframes[0].1.position, Point::new(21.0, 1.0));
     assert_eq!(scene.colliders[1].name, "collider-2");
     assert!(matches!(scene.loads[0].kind, LoadKind::PerPoint(ref f) if f.len() == 1));
+    let index = |name: &str| scene.materials.iter().position(|m| m.name == name).unwrap();
+    let [glass, snow] = scene.contact.pairs[0].materials;
+    assert_eq!([glass, snow], ["glass", "snow"].map(index));
+    assert_eq!(scene.contact.friction_between(snow, glass), f64::INFINITY);
+    assert_eq!(scene.contact.friction_between(glass, glass), 0.3);
     assert_eq!(scene.supports[0].velocity, [Some(0.0), None]);
     assert_eq!(scene.supports[1].velocity, [None, Some(-2.0)]);
     assert_eq!(scene.bodies[0].velocities.len(), 2);

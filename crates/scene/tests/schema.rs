@@ -42,6 +42,9 @@ force = [1, 0]
 velocity_x = 0
 [[initial_velocity]]
 velocity = [0, 0]
+[[contact.pairs]]
+materials = ['mine', 'mine']
+friction = 0
 ";
     format!("{PLATE}{rest}")
 }

@@ -31,6 +31,7 @@ pub(crate) fn free_body(region: Region, spacing: f64) -> Scene {
         bodies: vec![Body { name: "body".into(), region, material: 0, inclusions: Vec::new(), velocities: Vec::new() }],
         cracks: Vec::new(),
         toughness: Vec::new(),
+        contact: Default::default(),
         colliders: Vec::new(),
         gravity: Vector::zeros(),
         loads: Vec::new(),

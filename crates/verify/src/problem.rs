@@ -73,6 +73,7 @@ impl Problem {
             }],
             cracks: Vec::new(),
             toughness: Vec::new(),
+            contact: Default::default(),
             colliders: Vec::new(),
             gravity: Vector::zeros(),
             loads: Vec::new(),

@@ -63,6 +63,8 @@ pub struct Document {
     pub grid: GridKeys,
     /// Solver; every key defaults to the value of the preset.
     pub solver: SolverKeys,
+    /// What bodies and fragments do to each other where they touch.
+    pub contact: ContactKeys,
     /// Growth of cracks; every key defaults to the value of the solver's preset.
     pub growth: GrowthKeys,
     /// Which frames to compute.

@@ -65,6 +65,30 @@ pub struct SolverKeys {
     pub mode_split: Option<ModeSplit>,
 }
 
+/// What bodies and fragments do to each other where they touch (total formulation; in the updated one the grid keeps
+/// them apart, without friction).
+#[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct ContactKeys {
+    /// Coulomb friction between surfaces; `inf`: they stick. Default: 0. Between the two faces of one crack it is
+    /// `solver.crack_friction`, against a collider that collider's.
+    #[schemars(transform = FRICTION.bounds())]
+    pub friction: f64,
+    /// Pairs of materials with a friction of their own.
+    pub pairs: Vec<PairFrictionKeys>,
+}
+
+/// Friction between two materials.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PairFrictionKeys {
+    /// The two materials, in any order; twice the same for what is made of it. Required.
+    pub materials: [String; 2],
+    /// Coulomb friction; `inf`: they stick. Required.
+    #[schemars(transform = FRICTION.bounds())]
+    pub friction: f64,
+}
+
 /// A time step: `"auto"` or seconds.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, JsonSchema)]
 #[serde(untagged)]

@@ -4,8 +4,8 @@ use super::curve::{Clock, validate_speed};
 use crate::fault::Check;
 use crate::fault::{KeyPath, SceneFault, short};
 use crate::range::{
-    ACUTE, AREA, BENDING, CELLS, DAMPING, FRACTION, FRAME_RATE, FRAMES, FRICTION, LENGTH, PARTICLE_FRAMES, PARTICLES,
-    RELEASE_RATIO, TIME, TIME_STEP, UNIT,
+    ACUTE, AREA, BENDING, CELLS, DAMPING, FRACTION, FRAME_RATE, FRAMES, FRICTION, ITEMS, LENGTH, PARTICLE_FRAMES,
+    PARTICLES, RELEASE_RATIO, TIME, TIME_STEP, UNIT,
 };
 use crate::scene::{Body, Scene};
 use crate::settings::Branching;
@@ -128,6 +128,7 @@ impl Scene {
         FRACTION.check(solver("courant"), "`courant`", s.courant)?;
         DAMPING.check(solver("damping"), "`damping`", s.damping)?;
         FRICTION.check(solver("crack_friction"), "`crack_friction`", s.crack_friction)?;
+        self.validate_contact()?;
         if let Some(radius) = s.j_radius {
             CELLS.check(solver("j_radius"), "`j_radius`", radius)?;
         }
@@ -158,6 +159,24 @@ impl Scene {
         }
         LENGTH.check(KeyPath::setting("output", "thickness"), "the thickness", o.thickness)?;
         AREA.check(KeyPath::setting("output", "smallest_fragment"), "the smallest fragment", o.smallest_fragment)
+    }
+}
+
+impl Scene {
+    fn validate_contact(&self) -> Check {
+        let contact = |key: &str| KeyPath::setting("contact", key);
+        FRICTION.check(contact("friction"), "the friction of contact", self.contact.friction)?;
+        ITEMS.check(&contact("pairs"), "`pairs`", self.contact.pairs.len())?;
+        for (i, pair) in self.contact.pairs.iter().enumerate() {
+            let path = contact("pairs").then(i);
+            if let Some(material) = pair.materials.iter().find(|&&m| m >= self.materials.len()) {
+                let message = format!("a pair names material number {material}");
+                let remedy = format!("there are {}, numbered from 0", self.materials.len());
+                return Err(SceneFault::new(path.then("materials"), message, remedy));
+            }
+            FRICTION.check(path.then("friction"), "the friction of a pair", pair.friction)?;
+        }
+        Ok(())
     }
 }
 

@@ -4,9 +4,6 @@ use super::neighbours::Neighbour;
 use super::surface::Surface;
 use fissure_plane::{Point, Vector};
 
-/// A vertex touches an edge only where the product of their normals is below this.
-const FACING: f64 = 0.3;
-
 /// A vertex that passes the end of an edge by less than this part of it is still above it: the corners of two things
 /// that lie on each other may lie on each other as well.
 const PAST_END: f64 = 1e-3;
@@ -47,14 +44,10 @@ pub(crate) fn meeting(
     cell_size: f64,
 ) -> Option<Meeting> {
     let x = place[vertex as usize];
-    let own = surface.normal(vertex, place)?;
     let mut nearest = (f64::INFINITY, None);
     for neighbour in near {
         let Some(next) = surface.next(neighbour.edge) else { continue };
         let Some(flat) = surface.edge_normal(neighbour.edge, place) else { continue };
-        if own.dot(&flat) >= FACING {
-            continue;
-        }
         let (a, b) = (place[neighbour.edge as usize], place[next as usize]);
         let along = (x - a).dot(&(b - a)) / (b - a).norm_squared();
         let is_beyond = !(-PAST_END..=1.0 + PAST_END).contains(&along);
@@ -63,7 +56,13 @@ pub(crate) fn meeting(
             continue;
         }
         let along = along.clamp(0.0, 1.0);
-        let distance = (x - (a + (b - a) * along)).norm();
+        let away = x - (a + (b - a) * along);
+        // Where flat sides lie on each other, a vertex of one that is just beyond the corner of the other is beside it.
+        let out = if is_beyond && away.dot(&flat) >= 0.0 { away.try_normalize(0.0).unwrap_or(flat) } else { flat };
+        if !surface.looks(vertex, -out, place) {
+            continue;
+        }
+        let distance = away.norm();
         if distance < nearest.0 {
             nearest = (distance, Some((neighbour, next, flat, along, is_beyond)));
         }

@@ -8,6 +8,9 @@ const NONE: u32 = u32::MAX;
 /// Cosine of the turn up to which a surface is round at a vertex and no corner: 30°.
 const ROUND: f64 = 0.866;
 
+/// Cosine of the angle between the normals of surfaces that touch, at most: 45°.
+const LOOKS: f64 = 0.7;
+
 /// A vertex of a surface. Edges have the number of the vertex they begin at.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SurfaceVertex {
@@ -104,6 +107,17 @@ impl Surface {
     pub(crate) fn round_normal(&self, vertex: u32, place: &[Point]) -> Option<Vector> {
         let [Some(before), Some(after)] = self.normals_around(vertex, place) else { return None };
         if before.dot(&after) >= ROUND { (before + after).try_normalize(0.0) } else { None }
+    }
+
+    /// Whether the material ends at a vertex towards `direction` (a unit vector): within [`LOOKS`] of the normals of
+    /// its edges or, at a corner, between them.
+    pub(crate) fn looks(&self, vertex: u32, direction: Vector, place: &[Point]) -> bool {
+        let normals = self.normals_around(vertex, place);
+        let between = match normals {
+            [Some(before), Some(after)] => before.perp(&direction) > 0.0 && direction.perp(&after) > 0.0,
+            _ => false,
+        };
+        between || normals.into_iter().flatten().any(|normal| normal.dot(&direction) > LOOKS)
     }
 
     /// Whether of all places of the surface around a vertex the vertex is the nearest to `point`.

@@ -3,7 +3,7 @@
 //! Every node has its own field; its degree of freedom has the number of the node. Nodes near cracks have further
 //! fields, one for each set of (crack, side) that particles cross on the way to the node; their number is not limited,
 //! and a scene without a crack has none. A node that several bodies see is one body's own
-//! ([`SharedNodes`](crate::grid::shared_nodes::SharedNodes)); the others have fields of their own there.
+//! ([`Owners`](crate::grid::owners::Owners)); the others have fields of their own there.
 
 use crate::crack::crossing::Side;
 use crate::crack::division::{CrossedSet, facing};

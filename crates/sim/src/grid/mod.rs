@@ -18,8 +18,8 @@ pub(crate) mod entries;
 pub(crate) mod fields;
 pub(crate) mod kernel;
 mod laying;
+pub(crate) mod owners;
 pub(crate) mod scan;
-pub(crate) mod shared_nodes;
 pub(crate) mod spans;
 pub(crate) mod walker;
 

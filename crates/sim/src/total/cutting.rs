@@ -25,7 +25,7 @@ impl Lattice {
             for a in 0..stencil.width {
                 let (w, g) = (stencil.weight(a, b), slopes.weight_gradient(a, b));
                 let Some(node) = nodes.at(a, b) else { continue };
-                let guest = self.shared.guest(node, body);
+                let guest = self.owners.guest(node, body);
                 if !near {
                     let field = self.layout.fields.find_or_add(node, guest, &CrossedSet::new());
                     entries.push(Entry { field: field as u32, weight: w, gradient: g });
@@ -73,7 +73,7 @@ impl Lattice {
         }
         let body = body?;
         let mut nodes = rows.into_iter().flat_map(|node| [node, node + 1]);
-        if nodes.any(|node| self.shared.guest(node, body).is_some()) {
+        if nodes.any(|node| self.owners.guest(node, body).is_some()) {
             return None;
         }
         material

@@ -9,7 +9,7 @@ use crate::crack::division::{Division, Share, TipCut};
 use crate::grid::Grid;
 use crate::grid::fields::Fields;
 use crate::grid::kernel;
-use crate::grid::shared_nodes::SharedNodes;
+use crate::grid::owners::Owners;
 use crate::grid::walker::Walker;
 use crate::material::elastic::Elastic;
 use crate::particles::Particles;
@@ -33,7 +33,7 @@ pub(super) struct Lattice {
     /// How particles see nodes now.
     pub(super) layout: Layout,
     /// Nodes that several bodies see.
-    pub(super) shared: SharedNodes,
+    pub(super) owners: Owners,
     /// Body of each crack.
     body_of_crack: Vec<u32>,
     /// One over the mass of each field [m/kg]; zero where there is none.
@@ -84,12 +84,12 @@ impl Lattice {
             cut: CutParticles::new(particles.len()),
             runs: vec![Vec::new(); grid.rows()],
         };
-        let shared =
-            if scene.bodies.len() > 1 { shared_nodes(kernel, &grid, &particles) } else { SharedNodes::default() };
+        let owners =
+            if scene.bodies.len() > 1 { owners_of_nodes(kernel, &grid, &particles) } else { Owners::default() };
         Ok(Self {
             grid,
             particles,
-            shared,
+            owners,
             body_of_crack: Vec::new(),
             materials: scene.materials.iter().map(|m| Elastic::new(m, scene.plane)).collect(),
             division: Division::new(&[], tip_division, cut, scene.cell_size, scene.particle_spacing, 1.0),
@@ -243,8 +243,8 @@ impl Lattice {
 }
 
 /// The nodes of `grid` that particles of several bodies see.
-fn shared_nodes(kernel: Kernel, grid: &Grid, particles: &Particles) -> SharedNodes {
-    SharedNodes::new(grid.len(), |see| {
+fn owners_of_nodes(kernel: Kernel, grid: &Grid, particles: &Particles) -> Owners {
+    Owners::new(grid.len(), |see| {
         let mut walker = Walker::new(grid);
         for (&body, &place) in particles.body.iter().zip(&particles.rest) {
             let stencil = stencil(kernel, particles.spacing, grid, place);

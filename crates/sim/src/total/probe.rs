@@ -78,7 +78,7 @@ impl Lattice {
         let nodes = self.grid.stencil(&stencil);
         let mass = |field: usize| self.layout.mass[field];
         let fields = &self.layout.fields;
-        let guest = |node: usize| self.shared.guest(node, body);
+        let guest = |node: usize| self.owners.guest(node, body);
         let has_material = |&node: &usize| {
             let all = std::iter::once(node).chain(fields.of(node).iter().map(|&field| field as usize));
             all.into_iter().any(|field| mass(field) > 0.0 && fields.guest(field) == guest(node))
@@ -136,7 +136,7 @@ impl Lattice {
             let (nodes, beyond) = (self.grid.stencil(&stencil), stencil.carried_on(offset));
             for (b, a) in (0..stencil.width).flat_map(|b| (0..stencil.width).map(move |a| (b, a))) {
                 let Some(node) = nodes.at(a, b) else { continue };
-                let field = self.layout.fields.find(node, self.shared.guest(node, body), &CrossedSet::new());
+                let field = self.layout.fields.find(node, self.owners.guest(node, body), &CrossedSet::new());
                 entries.extend(field.map(|field| (field as u32, beyond.weight(a, b))));
             }
             return entries;

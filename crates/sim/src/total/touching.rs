@@ -180,7 +180,9 @@ impl Touching {
                 continue;
             }
             shares_of(&mut shares, surfaces, vertex, &found, moment, held);
-            self.meetings.push(found.normal, least, 0.0, &mut shares, before);
+            let [own, other] = [vertex, found.ends[0]].map(|v| surfaces.surface.vertex(v).material as usize);
+            let friction = moment.scene.contact.friction_between(own, other);
+            self.meetings.push(found.normal, least, friction, &mut shares, before);
         }
         self.meetings.begin(&mut motion.velocity);
         self.meetings.solve(&mut motion.velocity);

@@ -7,6 +7,7 @@ use crate::fault::{KeyPath, SceneFault};
 use crate::load::nearest::nearest;
 use crate::materials::{SNOW_PLASTICITY, material_preset, material_presets};
 use crate::scene::*;
+use crate::settings::PairFriction;
 use crate::validate::{outside, overlap};
 use fissure_plane::{Point, Vector};
 
@@ -91,6 +92,19 @@ impl<'d> Resolver<'d> {
         materials.push(preset);
         self.origin.materials.push(None);
         Ok(materials.len() - 1)
+    }
+
+    /// Friction between pairs of materials.
+    pub(super) fn pair_frictions(&mut self, materials: &mut Vec<Material>) -> Resolved<Vec<PairFriction>> {
+        let mut pairs = Vec::new();
+        for (i, keys) in self.document.contact.pairs.iter().enumerate() {
+            let path = KeyPath::setting("contact", "pairs").then(i).then("materials");
+            let [first, second] = &keys.materials;
+            let first = self.material_index(path.clone(), first, materials)?;
+            let second = self.material_index(path, second, materials)?;
+            pairs.push(PairFriction { materials: [first, second], friction: keys.friction });
+        }
+        Ok(pairs)
     }
 
     /// Puts the parts of other materials into their bodies.

@@ -20,6 +20,7 @@ use crate::document::Document;
 use crate::fault::{KeyPath, SceneFault, Warning};
 use crate::range::{ITEMS, LENGTH};
 use crate::scene::Scene;
+use crate::settings::ContactSettings;
 use fissure_plane::Vector;
 use std::cell::RefCell;
 
@@ -115,6 +116,7 @@ impl<'d> Resolver<'d> {
             materials,
             bodies,
             solver,
+            contact: ContactSettings { friction: document.contact.friction, pairs: Vec::new() },
             growth,
         };
         scene.loads = self.loads(&scene, tolerance)?;
@@ -124,6 +126,7 @@ impl<'d> Resolver<'d> {
         scene.validate().map_err(|fault| self.origin.in_document(fault))?;
         self.narrow_bodies(&scene);
         self.inclusions(&mut scene, tolerance)?;
+        scene.contact.pairs = self.pair_frictions(&mut scene.materials)?;
         scene.toughness = self.toughness(&scene, tolerance)?;
         self.cracks(&mut scene, tolerance)?;
         self.flaws(&mut scene, tolerance)?;
@@ -148,6 +151,7 @@ impl<'d> Resolver<'d> {
             ("load", d.load.len()),
             ("support", d.support.len()),
             ("initial_velocity", d.initial_velocity.len()),
+            ("contact", d.contact.pairs.len()),
         ];
         arrays.into_iter().try_for_each(|(key, count)| ITEMS.check(&KeyPath::top(key), &format!("`{key}`"), count))
     }
