@@ -27,6 +27,10 @@ pub const CASES: &[Case] = &[
     cases::free_flight::TURNS,
     cases::cantilever_growth::CASE,
     cases::transfers::CASE,
+    cases::two_discs::CASE,
+    cases::hertz::CASE,
+    cases::incline::CASE,
+    cases::wedge::CASE,
 ];
 
 /// The case of a name.
