@@ -53,6 +53,20 @@ fn center_crack() {
     met(&report, "|K_II|/K_I");
 }
 
+/// Two of the four places are turned by any angle.
+#[test]
+fn double_notch() {
+    let report = anywhere("double-notch", 4.0, 4);
+    within(&report, "K_I/(σ√πa)", 0.03);
+}
+
+/// Energy is kept wherever the plate lies, and no run is stopped.
+#[test]
+fn ringing_plate() {
+    let report = anywhere("ringing-plate", 8.0, 4);
+    met(&report, "");
+}
+
 /// Measured 2.2 % and 1.1° at 45° where the crack lies on nodes or particles, 0.7 % and 0.4° else (targets 2 % and 1°
 /// at 16 cells).
 #[test]

@@ -40,6 +40,8 @@ mod placed;
 mod placement;
 mod problem;
 mod report;
+#[cfg(test)]
+mod symmetry;
 mod table;
 
 pub use case::{Case, Options};

@@ -7,6 +7,7 @@ use crate::cases;
 pub const CASES: &[Case] = &[
     cases::edge_crack::CASE,
     cases::center_crack::CASE,
+    cases::double_notch::CASE,
     cases::slanted_crack::CASE,
     cases::drawn_kinks::CASE,
     cases::closed_crack::CASE,
@@ -23,6 +24,7 @@ pub const CASES: &[Case] = &[
     cases::cantilever::CASE,
     cases::bar_wave::CASE,
     cases::spinning_disc::CASE,
+    cases::ringing_plate::CASE,
     cases::free_flight::FLIGHT,
     cases::free_flight::TURNS,
     cases::cantilever_growth::CASE,

@@ -100,6 +100,12 @@ impl Placement {
         }
     }
 
+    /// Mirrored or not, then turned.
+    #[cfg(test)]
+    pub(crate) fn by_right_angles(mirror: bool, quarters: u8) -> Self {
+        Self { mirror, turn: Turn::Quarters(quarters), ..Self::NATURAL }
+    }
+
     /// What points and vectors are multiplied by.
     fn map(&self) -> Matrix {
         let (sine, cosine) = match self.turn {
