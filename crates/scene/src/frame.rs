@@ -22,6 +22,8 @@ pub struct Frame {
     pub energies: Energies,
     /// Pose of each collider, in the order of the scene.
     pub colliders: Vec<Pose>,
+    /// What each support does, in the order of the scene.
+    pub supports: Vec<SupportRecord>,
 }
 
 /// Material points, one entry per particle in every field, in the order of `id`.
@@ -200,6 +202,15 @@ pub struct Energies {
     pub external_work: f64,
     /// Energy released so far into new crack surface, ∫ G da with G measured at the tips.
     pub crack: f64,
+}
+
+/// What a support does to the material, per unit thickness.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SupportRecord {
+    /// Mean force on the material since the frame before; zero in the first frame [N/m].
+    pub force: Vector,
+    /// Work done so far [J/m].
+    pub work: f64,
 }
 
 /// Position and angle of a rigid body.

@@ -389,3 +389,26 @@ fn a_narrow_neck_is_warned_of_with_its_line() {
     assert!(warning.remedy.contains("0.2 m or less"), "{}", warning.remedy);
     assert_eq!(loaded.place(&warning.path).line(), Some(4));
 }
+
+/// Truth: the way over time, by the integral of the velocity, at its points and between them.
+#[test]
+fn a_displacement_is_a_velocity_over_time() {
+    let of = |keys: &str| scene_with(&format!("{PLATE}[[support]]\n{keys}\n"), None, &[]);
+    let scene = of("displacement_x = 0.5\ncurve = [[0.25, 0], [0.5, 1], [1.5, -1], [2, -1]]").unwrap();
+    let support = &scene.supports[0];
+    assert_eq!(support.velocity[1], None);
+    for (time, way) in [(0.25, 0.0), (0.3, 0.1), (0.5, 0.5), (1.0, 0.0), (1.5, -0.5), (9.0, -0.5)] {
+        let found = support.velocity[0].unwrap() * support.curve.mean(0.0, time) * time;
+        assert!((found - way).abs() < 1e-6, "{found} at {time}");
+    }
+    for (keys, words) in [
+        ("displacement_x = 0.5", "would be a jump"),
+        ("displacement_x = 0.5\ncurve = [[0, 0.1], [1, 1]]", "begins at a factor of 0.1"),
+        ("displacement_x = 0.5\ncurve = [[0, 0], [1e-9, 1]]", "highest speed on the way"),
+        ("displacement_x = 0.5\nvelocity_y = 1\ncurve = [[0, 0], [1, 1]]", "both a velocity and a displacement"),
+        ("displacement_x = 0.5\nfix = 'y'\ncurve = [[0, 0], [1, 1]]", "both `fix` and"),
+    ] {
+        let told = of(keys).unwrap_err().to_string();
+        assert!(told.contains(words), "{told}");
+    }
+}

@@ -134,6 +134,8 @@ fn with_company(set: &str) -> String {
         ("flaws.0.density=", "flaws=[{ length = 1, density = # }]"),
         ("load.0.traction=", "load=[{ select = { edge = 'left' }, traction = [#, 0] }]"),
         ("load.0.per_point.0.at=", "load=[{ per_point = [{ at = [#, 0], force = [0, 0] }] }]"),
+        ("support.0.displacement_x=", "support=[{ displacement_x = #, curve = [[0, 0], [1e8, 1]] }]"),
+        ("support.0.displacement_y=", "support=[{ displacement_y = #, curve = [[0, 0], [1e8, 1]] }]"),
         ("load.0.per_point.0.force=", "load=[{ per_point = [{ at = [0, 0], force = [#, 0] }] }]"),
     ];
     let found = alone.iter().find(|(key, _)| set.starts_with(key));

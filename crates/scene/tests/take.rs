@@ -47,7 +47,7 @@ fn a_take_is_read_as_it_was_written() {
     assert_eq!((take.scene(), take.frame_numbers()), (&scene(), vec![1, 2, 3, 4]));
     assert_eq!(take.frame(3).unwrap(), frame(3));
     assert!(!take.is_complete() && take.remarks().unwrap().is_empty());
-    assert_eq!(listing(folder.path()).len(), 4 + 5);
+    assert_eq!(listing(folder.path()).len(), 4 + 6);
     let energy = std::fs::read_to_string(folder.path().join("energy.csv")).unwrap();
     assert_eq!(energy.lines().count(), 5);
 }
@@ -149,6 +149,7 @@ fn what_cannot_go_on_is_told_and_kept() {
         "frame.0077.safetensors",
         "frames.jsonl",
         "manifest.json",
+        "supports.csv",
         "thesis.txt",
         "tips.csv",
     ];
@@ -218,7 +219,7 @@ fn torn_and_changed_tables_are_made_anew() {
     let inside = Folder::new(folder.path());
     take_of(&inside, 1..=3);
     let whole = listing(folder.path());
-    for name in ["tips.csv", "energy.csv"] {
+    for name in ["tips.csv", "energy.csv", "supports.csv"] {
         let text = inside.read(name).unwrap().unwrap();
         let mut changed = text.clone();
         changed[text.len() / 2] ^= 1;
@@ -260,8 +261,8 @@ fn damage_is_told() {
 
     let manifest = folder.path().join("manifest.json");
     let text = std::fs::read_to_string(&manifest).unwrap();
-    std::fs::write(&manifest, text.replacen("\"version\": 2", "\"version\": 99", 1)).unwrap();
-    told(Take::open(folder.path()).unwrap_err(), &["manifest.json", "version 99", "version 2", "--overwrite"]);
+    std::fs::write(&manifest, text.replacen("\"version\": 3", "\"version\": 99", 1)).unwrap();
+    told(Take::open(folder.path()).unwrap_err(), &["manifest.json", "version 99", "version 3", "--overwrite"]);
     std::fs::write(&manifest, text.replacen("\"seed\": 7", "\"seed\": 8", 1)).unwrap();
     told(Take::open(folder.path()).unwrap_err(), &["manifest.json", "checksum", "--overwrite"]);
     std::fs::write(&manifest, "{\"name\": \"a web page\"}").unwrap();

@@ -187,6 +187,7 @@ fn calls_come_in_the_order_that_a_power_cut_asks_for() {
         "sync folder plate.take",
         "append tips.csv",
         "append energy.csv",
+        "append supports.csv",
         "append frames.jsonl",
         "sync frames.jsonl",
     ];

@@ -228,8 +228,9 @@ impl Particles {
     pub(crate) fn select(&self, scene: &Scene, selection: &Selection) -> Vec<u32> {
         let s = self.spacing;
         let selector = Selector::new(scene, selection);
-        // Of an edge: the layer of particles whose domain touches it.
-        let is_selected = |p: &usize| selector.selects(self.rest[*p], self.body[*p] as usize, s, 0.0);
+        // Of an edge: the layer of particles whose domain touches it, or that have taken what lies beyond theirs.
+        let deep = (1.0 + 1e-6) * s;
+        let is_selected = |p: &usize| selector.selects(self.rest[*p], self.body[*p] as usize, deep, 0.0);
         (0..self.len()).filter(is_selected).map(|p| p as u32).collect()
     }
 

@@ -1,6 +1,7 @@
 //! What a formulation is asked, by who asks: the run that steps it, the frames that read it, and tips that slide.
 
 use crate::SimulationError;
+use crate::boundary::supports::Reaction;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::tip::zone::TipZone;
 use fissure_scene::{CrackFrame, Matrix, OutlineFrame, ParticleFrame, Point, Vector};
@@ -70,6 +71,9 @@ pub(crate) trait Snapshot {
 
     /// Energies now.
     fn energies(&self) -> SolverEnergies;
+
+    /// What each support has done so far.
+    fn reactions(&self) -> &[Reaction];
 
     /// What the sum of kinetic and strain energy lacks because its velocities are those of half a step before [J/m].
     /// Costs an evaluation of all forces.
@@ -143,4 +147,6 @@ pub(crate) struct Continuation {
     pub(crate) outlines: Vec<OutlineFrame>,
     /// Work done so far [J/m].
     pub(crate) external_work: f64,
+    /// What each support has done so far.
+    pub(crate) reactions: Vec<Reaction>,
 }

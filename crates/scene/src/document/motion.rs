@@ -159,7 +159,7 @@ pub struct PointForce {
     pub force: [f64; 2],
 }
 
-/// A support: give `fix`, or `velocity_x` and/or `velocity_y`.
+/// A support: give `fix`, or `velocity_x` and/or `velocity_y`, or `displacement_x` and/or `displacement_y`.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SupportKeys {
@@ -174,8 +174,15 @@ pub struct SupportKeys {
     /// Velocity along y in m/s; without it the material is free along y.
     #[schemars(transform = VELOCITY.bounds())]
     pub velocity_y: Option<f64>,
-    /// Factor on the velocity over time, [[time in s, factor], ...] with rising times, linear between. Default: always
-    /// 1.
+    /// Displacement along x in m where the factor of `curve` is 1; the material is free along y unless `displacement_y`
+    /// is given.
+    #[schemars(transform = COORDINATE.bounds())]
+    pub displacement_x: Option<f64>,
+    /// Displacement along y in m where the factor of `curve` is 1.
+    #[schemars(transform = COORDINATE.bounds())]
+    pub displacement_y: Option<f64>,
+    /// Factor on the velocity or displacement over time, [[time in s, factor], ...] with rising times, linear between.
+    /// Default: always 1; a displacement needs one, which begins at 0.
     #[serde(default)]
     #[schemars(transform = pairs(TIME, CURVE_FACTOR))]
     pub curve: Vec<[f64; 2]>,

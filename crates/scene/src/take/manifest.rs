@@ -46,7 +46,7 @@ impl Manifest {
     /// Name of the format.
     pub const FORMAT: &str = "fissure-take";
     /// Version of the format that this program reads and writes.
-    pub const VERSION: u64 = 2;
+    pub const VERSION: u64 = 3;
 
     pub(super) fn new(scene: &Scene, provenance: Provenance) -> Self {
         Self {

@@ -6,6 +6,7 @@
 //! take/frame.0001.safetensors   one frame; names and shapes of its tensors: see `tensors`
 //! take/tips.csv                 one row per crack tip and frame
 //! take/energy.csv               one row per frame
+//! take/supports.csv             one row per support and frame
 //! take/state.bin                the solver's state at some frame, to go on from
 //! ```
 //! A frame is in the take when its line is in the list, and its line is added only when its file is on the disk. So a

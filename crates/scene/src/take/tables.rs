@@ -1,5 +1,5 @@
-//! `tips.csv` and `energy.csv`: what people plot. They hold nothing that is not in the frames, and are written anew
-//! from these where they are torn or changed.
+//! `tips.csv`, `energy.csv` and `supports.csv`: what people plot. They hold nothing that is not in the frames, and are
+//! written anew from these where they are torn or changed.
 
 use super::list::{FileEntry, FrameEntry};
 use super::{TakeError, frame_file};
@@ -19,7 +19,7 @@ pub(super) struct Table {
 }
 
 /// All tables, in the order in which the list of frames has their rows.
-pub(super) const TABLES: [Table; 2] = [
+pub(super) const TABLES: [Table; 3] = [
     Table {
         name: "tips.csv",
         head: "frame,time,crack,end,state,x,y,direction,j_integral,mode_1,mode_2,kink_angle,equivalent,\
@@ -27,6 +27,7 @@ pub(super) const TABLES: [Table; 2] = [
         rows: tip_rows,
     },
     Table { name: "energy.csv", head: "frame,time,kinetic,strain,external_work,crack\n", rows: energy_row },
+    Table { name: "supports.csv", head: "frame,time,support,force_x,force_y,work\n", rows: support_rows },
 ];
 
 impl Table {
@@ -126,6 +127,16 @@ fn tip_rows(frame: &Frame) -> String {
 fn energy_row(frame: &Frame) -> String {
     let e = &frame.energies;
     format!("{},{:e},{:e},{:e},{:e},{:e}\n", frame.number, frame.time, e.kinetic, e.strain, e.external_work, e.crack)
+}
+
+fn support_rows(frame: &Frame) -> String {
+    let mut rows = String::new();
+    for (index, s) in frame.supports.iter().enumerate() {
+        // Writing to a string cannot fail.
+        let _ =
+            writeln!(rows, "{},{:e},{index},{:e},{:e},{:e}", frame.number, frame.time, s.force.x, s.force.y, s.work);
+    }
+    rows
 }
 
 fn end_word(end: End) -> &'static str {

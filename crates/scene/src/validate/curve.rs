@@ -61,7 +61,7 @@ impl Clock {
 }
 
 /// The factor of a load or support over time.
-pub(super) fn validate_curve(path: &KeyPath, curve: &Curve) -> Check {
+pub(crate) fn validate_curve(path: &KeyPath, curve: &Curve) -> Check {
     let path = path.then("curve");
     Clock::Seconds.check(&path, "the points of the curve", &curve.points)?;
     let factor =

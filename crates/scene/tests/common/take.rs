@@ -80,6 +80,7 @@ pub fn frame(number: i64) -> Frame {
         }],
         energies: Energies { kinetic: 1.0, strain: 2.0, external_work: 3.0, crack: 4.0 },
         colliders: vec![Pose { position: Point::new(1.0, 2.0), angle: 0.25 }],
+        supports: vec![SupportRecord { force: Vector::new(5.0, -6.0), work: 7.0 }],
     }
 }
 

@@ -68,6 +68,8 @@ impl Simulation {
         for tip in self.state.cracks.tips_mut() {
             tip.run_at_frame = tip.run();
         }
+        self.state.impulses.clear();
+        self.state.impulses.extend(self.solver.reactions().iter().map(|reaction| reaction.impulse));
         let next = self.scene.frames.time(self.state.frame_number + 1);
         self.state.interval = next - self.state.time;
         let mut frame_steps = 0;

@@ -56,6 +56,8 @@ struct RunState {
     most_work: f64,
     /// Time between the last two frames [s].
     interval: f64,
+    /// Force times time of each support until the frame before, along x and y [N s/m].
+    impulses: Vec<[f64; 2]>,
     /// Fragment of each particle.
     fragments: Vec<u32>,
 }
@@ -105,6 +107,7 @@ impl Simulation {
                 first_energy: 0.0,
                 most_work: 0.0,
                 interval: 0.0,
+                impulses: vec![[0.0; 2]; scene.supports.len()],
                 fragments: fragments::of_bodies(&particles),
             },
             particles,

@@ -28,6 +28,8 @@ impl RunState {
         let is_a_frame = frames.contains(&self.frame_number) && self.time == scene.frames.time(self.frame_number);
         saved::ensure(is_a_frame, "its frame")?;
         saved::finite("its energy", [&self.crack_energy, &self.first_energy, &self.most_work, &self.interval])?;
+        saved::ensure(self.impulses.len() == scene.supports.len(), "its number of supports")?;
+        saved::finite("a reaction", self.impulses.iter().flatten())?;
         saved::ensure(self.fragments.len() == particles, "its number of particles")?;
         // Fragments only split, each into ones with particles of their own.
         saved::below("a particle", self.fragments.iter().copied(), particles)?;

@@ -2,8 +2,9 @@
 
 use super::{Counts, Simulation};
 use crate::boundary::collider::Obstacle;
+use crate::boundary::supports::Reaction;
 use crate::solver::Observed;
-use fissure_scene::{Energies, Formulation, Frame, Pose, Scene, TipRecord, Vector};
+use fissure_scene::{Energies, Formulation, Frame, Pose, Scene, SupportRecord, TipRecord, Vector};
 
 impl Simulation {
     /// The scene as it is simulated.
@@ -95,7 +96,19 @@ impl Simulation {
             tips: self.tips(),
             energies: self.energies(),
             colliders: self.collider_poses(),
+            supports: self.support_records(),
         }
+    }
+
+    /// What each support does, as in a frame.
+    pub fn support_records(&self) -> Vec<SupportRecord> {
+        let interval = self.state.interval;
+        let record = |(reaction, before): (&Reaction, &[f64; 2])| {
+            let mean = |axis: usize| (reaction.impulse[axis] - before[axis]) / interval;
+            let force = if interval > 0.0 { Vector::new(mean(0), mean(1)) } else { Vector::zeros() };
+            SupportRecord { force, work: reaction.work }
+        };
+        self.solver.reactions().iter().zip(&self.state.impulses).map(record).collect()
     }
 
     fn collider_poses(&self) -> Vec<Pose> {

@@ -42,6 +42,7 @@ mod ties;
 mod touching;
 
 use crate::SimulationError;
+use crate::boundary::supports::Reaction;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::particles::Particles;
 use crate::saved;
@@ -59,7 +60,7 @@ use motion::Motion;
 use near::Near;
 use probes::Probes;
 use std::sync::Arc;
-use supports::Supports;
+use supports::{HeldStep, Supports};
 use ties::Ties;
 use touching::{LastImpulses, Moment, Touching};
 
@@ -80,11 +81,13 @@ pub(crate) struct Total {
     touching: Touching,
     /// Work done by loads, supports and colliders so far [J/m].
     external_work: f64,
+    /// What each support has done so far.
+    reactions: Vec<Reaction>,
     steps_since_check: u32,
 }
 
-/// What of a solver cannot be laid anew from the scene and the cracks; last the work done so far.
-type Saved = (Layout, Motion, Probes, Ties, LastImpulses, f64);
+/// What of a solver cannot be laid anew from the scene and the cracks; last the work and the reactions so far.
+type Saved = (Layout, Motion, Probes, Ties, LastImpulses, (f64, Vec<Reaction>));
 
 /// Steps between two checks that everything is still finite and in range.
 const STEPS_BETWEEN_CHECKS: u32 = 8;
@@ -103,7 +106,8 @@ impl Total {
         let probes = Probes::new(scene, &lattice, cracks);
         let motion = Motion::initial(scene, &lattice);
         let ties = Ties::new(&lattice, &motion, cracks);
-        Self::of_parts(scene, lattice, (motion, probes, ties, LastImpulses::default(), 0.0), cracks)
+        let done = (0.0, vec![Reaction::default(); scene.supports.len()]);
+        Self::of_parts(scene, lattice, (motion, probes, ties, LastImpulses::default(), done), cracks)
     }
 
     /// Goes on from a saved state.
@@ -117,17 +121,18 @@ impl Total {
         state: &[u8],
     ) -> Result<Self, SimulationError> {
         let mut lattice = Self::lattice(scene, particles, cracks)?;
-        let (layout, mut motion, probes, ties, impulses, external_work): Saved = saved::from_bytes(state)?;
+        let (layout, mut motion, probes, ties, impulses, done): Saved = saved::from_bytes(state)?;
         let fields = layout.fields.len();
         lattice.check(&layout, cracks.len())?;
         motion.check(fields)?;
         probes.check(fields, scene, cracks)?;
         ties.check(fields, lattice.grid.len(), cracks.len())?;
         impulses.check()?;
-        saved::finite("the work done so far", [&external_work])?;
+        saved::finite("the work done so far", [&done.0])?;
+        Reaction::check(&done.1, scene.supports.len())?;
         motion.resize(fields);
         lattice.set_layout(layout);
-        Self::of_parts(scene, lattice, (motion, probes, ties, impulses, external_work), cracks)
+        Self::of_parts(scene, lattice, (motion, probes, ties, impulses, done), cracks)
     }
 
     fn lattice(scene: &Scene, particles: Arc<Particles>, cracks: &Cracks) -> Result<Lattice, SimulationError> {
@@ -139,7 +144,7 @@ impl Total {
     fn of_parts(
         scene: &Scene,
         lattice: Lattice,
-        (motion, probes, ties, impulses, external_work): (Motion, Probes, Ties, LastImpulses, f64),
+        (motion, probes, ties, impulses, done): (Motion, Probes, Ties, LastImpulses, (f64, Vec<Reaction>)),
         cracks: &Cracks,
     ) -> Result<Self, SimulationError> {
         let friction = scene.solver.crack_contact.then_some(scene.solver.crack_friction);
@@ -155,7 +160,8 @@ impl Total {
             motion,
             probes,
             ties,
-            external_work,
+            external_work: done.0,
+            reactions: done.1,
             steps_since_check: 0,
         })
     }
@@ -172,28 +178,34 @@ impl Total {
         contacts.resolve(lattice.mass(), probes, motion, kick, time_step);
     }
 
-    /// Surfaces that touch, at the time `time` [s]. Whether any is near enough.
-    fn touch(&mut self, cracks: &Cracks, time: f64, kick: f64, time_step: f64) -> bool {
-        let gain = motion::force_of_impulse(self.damping, kick);
-        let Self { scene, lattice, motion, probes, supports, touching, external_work, .. } = self;
+    /// Surfaces that touch, at the time `middle` [s] of a step. Whether any is near enough.
+    fn touch(&mut self, cracks: &Cracks, middle: f64, kick: f64, time_step: f64) -> bool {
+        let Self { scene, lattice, motion, probes, touching, .. } = self;
         let moment = Moment { scene, lattice, probes, cracks, kick, time_step };
         touching.look(&moment, motion);
         if !touching.is_near() {
             return false;
         }
         // What a support holds gives way to nothing.
-        supports.apply(&scene.supports, time, gain, lattice.mass(), motion, external_work);
+        self.apply_supports(middle, time_step, kick);
+        let Self { scene, lattice, motion, probes, touching, supports, .. } = self;
+        let moment = Moment { scene, lattice, probes, cracks, kick, time_step };
         touching.resolve(&moment, supports.held(), motion);
         true
     }
 
-    /// Supports, then colliders, at the time `time` [s], after a kick of `kick` [s].
-    fn apply_boundaries(&mut self, time: f64, kick: f64) {
+    /// Supports over a step around the time `middle` [s], after a kick of `kick` [s].
+    fn apply_supports(&mut self, middle: f64, time_step: f64, kick: f64) {
+        let step = HeldStep { middle, time_step, gain: motion::force_of_impulse(self.damping, kick) };
+        let Self { scene, lattice, motion, reactions, .. } = self;
+        self.external_work += self.supports.apply(&scene.supports, step, lattice.mass(), motion, reactions);
+    }
+
+    /// Supports, then colliders, at the time `middle` [s] of a step, after a kick of `kick` [s].
+    fn apply_boundaries(&mut self, middle: f64, time_step: f64, kick: f64) {
+        self.apply_supports(middle, time_step, kick);
         let mut work = 0.0;
-        let gain = motion::force_of_impulse(self.damping, kick);
-        let Self { scene, lattice, motion, .. } = self;
-        self.supports.apply(&scene.supports, time, gain, lattice.mass(), motion, &mut work);
-        self.colliders.apply(time, lattice, motion, &mut work);
+        self.colliders.apply(middle, &self.lattice, &mut self.motion, &mut work);
         self.external_work += work;
     }
 
@@ -261,7 +273,7 @@ impl Solver for Total {
             self.resolve_contacts(kick, time_step);
         }
         let touches = self.touch(cracks, middle, kick, time_step);
-        self.apply_boundaries(middle, kick);
+        self.apply_boundaries(middle, time_step, kick);
         if self.contacts.are_possible() && !self.colliders.is_empty() {
             self.resolve_contacts(kick, time_step);
         }
@@ -342,6 +354,10 @@ impl Snapshot for Total {
         }
     }
 
+    fn reactions(&self) -> &[Reaction] {
+        &self.reactions
+    }
+
     fn energy_of_lag(&self) -> f64 {
         snapshot::energy_of_lag(&self.lattice, &self.ties, &self.motion)
     }
@@ -364,12 +380,19 @@ impl Snapshot for Total {
             cracks: self.crack_frames(cracks),
             outlines: self.outline_frames(),
             external_work: self.external_work,
+            reactions: self.reactions.clone(),
         })
     }
 
     fn save(&self) -> Result<Vec<u8>, SimulationError> {
-        let saved =
-            (&self.lattice.layout, &self.motion, &self.probes, &self.ties, self.touching.last(), self.external_work);
+        let saved = (
+            &self.lattice.layout,
+            &self.motion,
+            &self.probes,
+            &self.ties,
+            self.touching.last(),
+            (self.external_work, &self.reactions),
+        );
         saved::to_bytes(&saved)
     }
 }

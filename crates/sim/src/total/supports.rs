@@ -7,7 +7,7 @@ use super::motion::Motion;
 use super::near::Near;
 use crate::SimulationError;
 use crate::boundary::selector::Selector;
-use crate::boundary::supports::{contradiction, prescribed};
+use crate::boundary::supports::{Reaction, contradiction, prescribed};
 use fissure_plane::{Point, Vector};
 use fissure_scene::{OutlineStretch, Scene, Selection, Support};
 use std::collections::BTreeMap;
@@ -98,36 +98,53 @@ impl Supports {
         &self.held
     }
 
-    /// Makes velocities those that `supports` prescribe at the time `time` [s]; `gain`: what force times time an
-    /// impulse of 1 stands for. Adds the work of a step to `work` [J/m].
+    /// Makes velocities those that `supports` prescribe over a step. Gives the work of that [J/m] and adds what each
+    /// does to `reactions`, one for each.
     pub(super) fn apply(
         &self,
         supports: &[Support],
-        time: f64,
-        gain: f64,
+        step: HeldStep,
         mass: &[f64],
         motion: &mut Motion,
-        work: &mut f64,
-    ) {
+        reactions: &mut [Reaction],
+    ) -> f64 {
+        let mut work = 0.0;
         for (axis, system) in self.systems.iter().enumerate().filter(|(_, system)| !system.is_empty()) {
-            let speed = |support: u32| {
-                let of_axis = prescribed(&supports[support as usize], time).find(|held| held.axis == axis);
+            let speed = |support: &Support| {
+                let of_axis = prescribed(support, step.middle, step.time_step).find(|held| held.axis == axis);
                 of_axis.map_or(0.0, |held| held.velocity())
             };
-            let speeds: Vec<f64> = (0..supports.len() as u32).map(speed).collect();
-            let before = &motion.acceleration[axis];
+            let speeds: Vec<f64> = supports.iter().map(speed).collect();
+            let (velocity, before) = (&mut motion.velocity[axis], &motion.acceleration[axis]);
             system.apply(
                 |support| speeds[support as usize],
                 mass,
-                &mut motion.velocity[axis],
+                velocity,
                 |held, impulse| {
+                    let reaction = &mut reactions[held.support as usize];
+                    let impulse = step.gain * impulse;
                     // A force over a step does work on the mean of the velocities before and after it.
                     let was: f64 = held.entries.iter().map(|&(field, w)| w * before[field as usize]).sum();
-                    *work += gain * impulse * 0.5 * (was + speeds[held.support as usize]);
+                    let done = impulse * 0.5 * (was + speeds[held.support as usize]);
+                    reaction.impulse[axis] += impulse;
+                    reaction.work += done;
+                    work += done;
                 },
             );
         }
+        work
     }
+}
+
+/// A step in which supports hold velocities.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct HeldStep {
+    /// Time in its middle [s].
+    pub(super) middle: f64,
+    /// Its length [s].
+    pub(super) time_step: f64,
+    /// What force times time an impulse of 1 stands for ([`super::motion::force_of_impulse`]).
+    pub(super) gain: f64,
 }
 
 /// Fields that supports hold, along which axes.

@@ -46,6 +46,7 @@ mod tracer;
 mod tracers;
 
 use crate::SimulationError;
+use crate::boundary::supports::Reaction;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::particles::Particles;
 use crate::saved;
@@ -68,7 +69,7 @@ use remap::{remapped_velocities, smoothed_velocities};
 use setup::Setup;
 use stability::Stability;
 use std::sync::Arc;
-use supports::Supports;
+use supports::{HeldStep, Supports};
 
 /// The updated Lagrangian solver.
 #[derive(Debug)]
@@ -85,6 +86,8 @@ pub(crate) struct Updated {
     faces: Faces,
     /// Work done by loads, gravity, supports and colliders so far [J/m].
     external_work: f64,
+    /// What each support has done so far.
+    reactions: Vec<Reaction>,
     // What follows is made anew in every step.
     lattice: Lattice,
     nodes: Nodes,
@@ -99,7 +102,8 @@ impl Updated {
     pub(crate) fn new(scene: &Scene, particles: Arc<Particles>, cracks: &Cracks) -> Result<Self, SimulationError> {
         let setup = Setup::new(scene, particles);
         let (points, faces) = (Points::at_rest(&setup), Faces::at_rest(scene, cracks));
-        Self::around(setup, points, faces, 0.0)
+        let reactions = vec![Reaction::default(); scene.supports.len()];
+        Self::around(setup, points, faces, (0.0, reactions))
     }
 
     /// Goes on from a state of the other formulation.
@@ -122,6 +126,7 @@ impl Updated {
         }
         solver.faces.set(&continuation);
         solver.external_work = continuation.external_work;
+        solver.reactions = continuation.reactions;
         Ok(solver)
     }
 
@@ -136,14 +141,20 @@ impl Updated {
         cracks: &Cracks,
         bytes: &[u8],
     ) -> Result<Self, SimulationError> {
-        let (points, faces, external_work): (Points, Faces, f64) = saved::from_bytes(bytes)?;
+        let (points, faces, external_work, reactions): (Points, Faces, f64, Vec<Reaction>) = saved::from_bytes(bytes)?;
         points.check(scene, particles.len())?;
         faces.check(scene, cracks)?;
         saved::finite("its work", [&external_work])?;
-        Self::around(Setup::new(scene, particles), points, faces, external_work)
+        Reaction::check(&reactions, scene.supports.len())?;
+        Self::around(Setup::new(scene, particles), points, faces, (external_work, reactions))
     }
 
-    fn around(setup: Setup, points: Points, faces: Faces, external_work: f64) -> Result<Self, SimulationError> {
+    fn around(
+        setup: Setup,
+        points: Points,
+        faces: Faces,
+        (external_work, reactions): (f64, Vec<Reaction>),
+    ) -> Result<Self, SimulationError> {
         Ok(Self {
             stability: Stability::of(&setup),
             loads: Loads::new(&setup)?,
@@ -153,6 +164,7 @@ impl Updated {
             points,
             faces,
             external_work,
+            reactions,
             lattice: Lattice::new(&setup),
             nodes: Nodes::default(),
             contacts: Contacts::default(),
@@ -201,8 +213,9 @@ impl Updated {
         self.contacts = self.overlaps();
         let friction = self.setup.scene.solver.crack_friction;
         self.contacts.resolve(&mut self.nodes, friction, time_step);
-        let Self { setup, points, lattice, nodes, .. } = self;
-        self.external_work += self.supports.hold_nodes(setup, points, lattice, middle, nodes);
+        let Self { setup, points, lattice, nodes, reactions, .. } = self;
+        let step = HeldStep { middle, time_step };
+        self.external_work += self.supports.hold_nodes(setup, points, lattice, step, nodes, reactions);
         self.external_work += self.colliders.collide_nodes(lattice, middle, nodes);
         if !(self.supports.is_empty() && self.colliders.is_empty()) {
             self.contacts.resolve(nodes, friction, time_step);
@@ -233,17 +246,18 @@ impl Updated {
     fn advance_particles(&mut self, time: f64, time_step: f64) -> Result<(), SimulationError> {
         let middle = time + 0.5 * time_step;
         let has_cracks = self.has_cracks();
-        let Self { setup, points, lattice, nodes, supports, .. } = self;
+        let Self { setup, points, lattice, nodes, supports, reactions, .. } = self;
+        let held_step = HeldStep { middle, time_step };
         let obstacles = self.colliders.at(middle);
         if lattice.kernel == Kernel::Bilinear {
             let (to, from) = (ToGrid { setup, points, lattice }, FromGrid { setup, lattice, nodes });
-            nodes.remapped = remapped_velocities(&to, &from, &obstacles, supports, middle);
+            nodes.remapped = remapped_velocities(&to, &from, &obstacles, supports, held_step);
         }
         points.motion.resize(if has_cracks { points.point.len() } else { 0 }, Motion::default());
         let held = supports.places(points);
         let step = ParticleStep { from: FromGrid { setup, lattice, nodes }, obstacles, time_step };
         let work = step.advance(points);
-        self.external_work += supports.hold_particles(setup, &held, middle, time_step, points);
+        self.external_work += supports.hold_particles(setup, &held, held_step, points, reactions);
         self.external_work +=
             work.map_err(|failure| failure.at(points.point[failure.particle].position, time + time_step))?;
         Ok(())

@@ -2,7 +2,7 @@
 
 use super::gather::{FromGrid, Wanted};
 use super::particles_to_grid::ToGrid;
-use super::supports::Supports;
+use super::supports::{HeldStep, Supports};
 use crate::boundary::collider::PlacedObstacle;
 
 /// S⁺ S v: the beginning's velocities, sent to the particles and back, at each field [m/s].
@@ -12,7 +12,7 @@ pub(super) fn smoothed_velocities(to: &ToGrid<'_>, from: &FromGrid<'_>) -> [Vec<
 }
 
 /// Velocities for the strains of the bilinear kernel: the particles' new ones, sent to the grid once more (Sulsky, Zhou
-/// & Schreyer 1995), at each field [m/s]. `middle`: time in the middle of the step [s].
+/// & Schreyer 1995), at each field [m/s].
 ///
 /// A particle that has just entered a cell reaches its far nodes with a weight w → 0 but a gradient of 1/h, so that
 /// their velocity f Δt/m grows as 1/w and would turn the particle inside out. Wider kernels have gradients that vanish
@@ -22,7 +22,7 @@ pub(super) fn remapped_velocities(
     from: &FromGrid<'_>,
     obstacles: &[PlacedObstacle<'_>],
     supports: &Supports,
-    middle: f64,
+    step: HeldStep,
 ) -> [Vec<f64>; 2] {
     let settings = &from.setup.scene.solver;
     let wanted = Wanted::by(settings.transfer, settings.kernel);
@@ -30,6 +30,6 @@ pub(super) fn remapped_velocities(
         let v = g.new_velocity(point.velocity, from.nodes.kept, settings.transfer);
         obstacles.iter().fold(v, |v, o| o.resolve(v, point.position))
     });
-    supports.prescribe(from.setup, &mut velocities, middle);
+    supports.prescribe(from.setup, &mut velocities, step);
     to.mean(&velocities, &from.nodes.mass)
 }

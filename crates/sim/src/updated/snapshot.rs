@@ -5,6 +5,7 @@ use super::faces::Faces;
 use super::points::Points;
 use super::setup::Setup;
 use crate::SimulationError;
+use crate::boundary::supports::Reaction;
 use crate::crack::cracks::Cracks;
 use crate::faces::crack_frame::crack_frame;
 use crate::particles::ParticleNow;
@@ -33,6 +34,10 @@ impl Snapshot for Updated {
         }
     }
 
+    fn reactions(&self) -> &[Reaction] {
+        &self.reactions
+    }
+
     fn energy_of_lag(&self) -> f64 {
         // Not known: forces at the new places would need the grid of the next step.
         0.0
@@ -56,7 +61,7 @@ impl Snapshot for Updated {
     }
 
     fn save(&self) -> Result<Vec<u8>, SimulationError> {
-        saved::to_bytes(&(&self.points, &self.faces, self.external_work))
+        saved::to_bytes(&(&self.points, &self.faces, self.external_work, &self.reactions))
     }
 }
 

@@ -5,8 +5,17 @@ use super::nodes::Nodes;
 use super::points::Points;
 use super::setup::Setup;
 use crate::SimulationError;
-use crate::boundary::supports::{Prescribed, prescribed};
+use crate::boundary::supports::{Prescribed, Reaction, prescribed};
 use fissure_scene::{Point, Support, Vector};
+
+/// A step in which supports hold velocities.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct HeldStep {
+    /// Time in its middle [s].
+    pub(super) middle: f64,
+    /// Its length [s].
+    pub(super) time_step: f64,
+}
 
 /// The particles that supports hold.
 #[derive(Debug)]
@@ -37,18 +46,23 @@ impl Supports {
         self.held.is_empty()
     }
 
-    /// What each support prescribes at the time `middle` [s], with its particles.
+    /// What each support prescribes in a step, with its particles.
     fn prescribed<'a>(
         &'a self,
         setup: &'a Setup,
-        middle: f64,
+        step: HeldStep,
     ) -> impl Iterator<Item = (impl Iterator<Item = Prescribed> + Clone + 'a, &'a [u32])> {
         let held = self.held.iter().map(Vec::as_slice);
-        setup.scene.supports.iter().zip(held).map(move |(support, held)| (prescribed(support, middle), held))
+        setup
+            .scene
+            .supports
+            .iter()
+            .zip(held)
+            .map(move |(support, held)| (prescribed(support, step.middle, step.time_step), held))
     }
 
     /// Prescribed velocities on nodes that hold more mass of held particles than of others; gives the work of that
-    /// [J/m].
+    /// [J/m] and adds it to `reactions`, one for each support.
     ///
     /// Dragging the other nodes along in part would do so again in every step, and damp the waves at the support: a
     /// plate pulled at one end, 81 steps, gained 81 % of the work that way, 98 % this way.
@@ -57,8 +71,9 @@ impl Supports {
         setup: &Setup,
         points: &Points,
         lattice: &Lattice,
-        middle: f64,
+        step: HeldStep,
         nodes: &mut Nodes,
+        reactions: &mut [Reaction],
     ) -> f64 {
         if self.is_empty() {
             return 0.0;
@@ -66,7 +81,7 @@ impl Supports {
         let mut held_mass = vec![0.0; nodes.mass.len()];
         let mut touched: Vec<usize> = Vec::new();
         let mut work = 0.0;
-        for (prescribed, particles) in self.prescribed(setup, middle) {
+        for ((prescribed, particles), reaction) in self.prescribed(setup, step).zip(reactions) {
             touched.clear();
             for &p in particles {
                 let m = setup.particles.mass[p as usize];
@@ -87,7 +102,10 @@ impl Supports {
                         let change = held.velocity() - *v;
                         *v += change;
                         // The force that does it moves along with the prescribed velocity.
-                        work += mass * change * held.speed * held.factor;
+                        let done = mass * change * held.velocity();
+                        work += done;
+                        reaction.work += done;
+                        reaction.impulse[held.axis] += mass * change;
                     }
                 }
                 held_mass[field] = 0.0;
@@ -97,8 +115,8 @@ impl Supports {
     }
 
     /// Puts prescribed velocities in the place of the `velocities` of held particles [m/s].
-    pub(super) fn prescribe(&self, setup: &Setup, velocities: &mut [Vector], middle: f64) {
-        for (prescribed, particles) in self.prescribed(setup, middle) {
+    pub(super) fn prescribe(&self, setup: &Setup, velocities: &mut [Vector], step: HeldStep) {
+        for (prescribed, particles) in self.prescribed(setup, step) {
             for &p in particles {
                 for held in prescribed.clone() {
                     velocities[p as usize][held.axis] = held.velocity();
@@ -113,24 +131,27 @@ impl Supports {
     }
 
     /// Prescribed velocities on the particles themselves: from the `places` they had they move exactly as prescribed.
-    /// Gives the work of that [J/m].
+    /// Gives the work of that [J/m] and adds it to `reactions`, one for each support.
     pub(super) fn hold_particles(
         &self,
         setup: &Setup,
         places: &[Vec<Point>],
-        middle: f64,
-        time_step: f64,
+        step: HeldStep,
         points: &mut Points,
+        reactions: &mut [Reaction],
     ) -> f64 {
         let mut work = 0.0;
-        for ((prescribed, particles), places) in self.prescribed(setup, middle).zip(places) {
+        for (((prescribed, particles), places), reaction) in self.prescribed(setup, step).zip(places).zip(reactions) {
             for (&p, place) in particles.iter().zip(places) {
                 let point = &mut points.point[p as usize];
                 for held in prescribed.clone() {
                     let (axis, after) = (held.axis, held.velocity());
-                    work += setup.particles.mass[p as usize] * (after - point.velocity[axis]) * after;
+                    let impulse = setup.particles.mass[p as usize] * (after - point.velocity[axis]);
+                    work += impulse * after;
+                    reaction.work += impulse * after;
+                    reaction.impulse[axis] += impulse;
                     point.velocity[axis] = after;
-                    point.position[axis] = place[axis] + time_step * after;
+                    point.position[axis] = place[axis] + step.time_step * after;
                     if let Some(c) = points.affine.get_mut(p as usize) {
                         c.row_mut(axis).fill(0.0);
                     }

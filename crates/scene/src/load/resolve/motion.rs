@@ -8,7 +8,7 @@ use crate::fault::{KeyPath, SceneFault};
 use crate::frame::Pose;
 use crate::range::{ANGULAR_VELOCITY, COORDINATE, VELOCITY};
 use crate::scene::*;
-use crate::validate::validate_region;
+use crate::validate::{validate_curve, validate_region};
 use fissure_plane::{Point, Region, Vector};
 
 impl<'d> Resolver<'d> {
@@ -97,26 +97,8 @@ impl<'d> Resolver<'d> {
     pub(super) fn supports(&self, scene: &Scene, tolerance: f64) -> Resolved<Vec<Support>> {
         let each = |(i, keys): (usize, &SupportKeys)| {
             let path = KeyPath::item("support", i);
-            let velocity = match (keys.fix, keys.velocity_x, keys.velocity_y) {
-                (Some(Fix::X), None, None) => [Some(0.0), None],
-                (Some(Fix::Y), None, None) => [None, Some(0.0)],
-                (Some(Fix::Both), None, None) => [Some(0.0); 2],
-                (None, x, y) if x.is_some() || y.is_some() => [x, y],
-                (None, ..) => {
-                    let message = "a support holds nothing";
-                    return Err(SceneFault::new(path, message, "add `fix = \"both\"`, `velocity_x` or `velocity_y`"));
-                }
-                (Some(_), ..) => {
-                    let message = "both `fix` and a velocity are given";
-                    return Err(SceneFault::new(
-                        path.then("fix"),
-                        message,
-                        "to hold still in one direction give it the velocity 0",
-                    ));
-                }
-            };
-            let selection = self.selection(&path, &keys.select, scene, tolerance)?;
-            Ok(Support { selection, velocity, curve: curve(&keys.curve) })
+            let (velocity, curve) = prescribed(&path, keys)?;
+            Ok(Support { selection: self.selection(&path, &keys.select, scene, tolerance)?, velocity, curve })
         };
         self.document.support.iter().enumerate().map(each).collect()
     }
@@ -148,6 +130,79 @@ impl<'d> Resolver<'d> {
 
 fn curve(list: &[[f64; 2]]) -> Curve {
     Curve { points: pairs(list) }
+}
+
+/// Velocity along x and y and its factor over time, of a support that prescribes velocities or displacements.
+fn prescribed(path: &KeyPath, keys: &SupportKeys) -> Resolved<([Option<f64>; 2], Curve)> {
+    let velocity = [keys.velocity_x, keys.velocity_y];
+    let displacement = [keys.displacement_x, keys.displacement_y];
+    let is_given = |of: [Option<f64>; 2]| of.iter().any(Option::is_some);
+    match (keys.fix, is_given(velocity), is_given(displacement)) {
+        (Some(fix), false, false) => {
+            let held = |is_held: bool| is_held.then_some(0.0);
+            Ok(([held(fix != Fix::Y), held(fix != Fix::X)], curve(&keys.curve)))
+        }
+        (None, true, false) => Ok((velocity, curve(&keys.curve))),
+        (None, false, true) => way(path, displacement, &keys.curve),
+        (None, false, false) => {
+            let remedy = "add `fix = \"both\"`, `velocity_x`, `velocity_y`, `displacement_x` or `displacement_y`";
+            Err(SceneFault::new(path.clone(), "a support holds nothing", remedy))
+        }
+        (None, true, true) => {
+            let message = "both a velocity and a displacement are given, but there is one `curve`";
+            Err(SceneFault::new(path.clone(), message, "write two supports of the same selection"))
+        }
+        (Some(_), ..) => {
+            let message = "both `fix` and a velocity or displacement are given";
+            let remedy = "to hold still in one direction give it the velocity 0";
+            Err(SceneFault::new(path.then("fix"), message, remedy))
+        }
+    }
+}
+
+/// Part of the shortest time between two points of a way over time within which its speed changes at a point: too short
+/// to be seen, long enough for times to rise.
+const TURN: f64 = 1e-6;
+
+/// Displacements [m] at a factor of 1 and the way over time as velocities with their factor over time.
+fn way(path: &KeyPath, displacement: [Option<f64>; 2], list: &[[f64; 2]]) -> Resolved<([Option<f64>; 2], Curve)> {
+    for (key, way) in ["displacement_x", "displacement_y"].into_iter().zip(displacement) {
+        COORDINATE.check(path.then(key), "the displacement of a support", way.unwrap_or(0.0))?;
+    }
+    validate_curve(path, &curve(list))?;
+    let points = pairs(list);
+    let of_curve = path.then("curve");
+    match points.first() {
+        Some(&(_, 0.0)) => (),
+        Some(&(_, first)) => {
+            let message = format!("the way of a support begins at a factor of {first}, a jump from where it stands");
+            return Err(SceneFault::new(of_curve.then(0), message, "let the curve begin at 0"));
+        }
+        None => {
+            let message = "a displacement without a curve would be a jump";
+            return Err(SceneFault::new(of_curve, message, "add for instance `curve = [[0.0, 0.0], [0.01, 1.0]]`"));
+        }
+    }
+    let slopes: Vec<f64> = points.windows(2).map(|p| (p[1].1 - p[0].1) / (p[1].0 - p[0].0)).collect();
+    let shortest = points.windows(2).map(|p| p[1].0 - p[0].0).fold(f64::INFINITY, f64::min);
+    let steepest = slopes.iter().fold(0.0_f64, |most, slope| most.max(slope.abs()));
+    if steepest == 0.0 {
+        return Ok((displacement.map(|way| way.map(|_| 0.0)), Curve::default()));
+    }
+    for (key, way) in ["displacement_x", "displacement_y"].into_iter().zip(displacement) {
+        let speed = way.unwrap_or(0.0) * steepest;
+        VELOCITY.check(path.then(key), "the highest speed on the way of a support", speed)?;
+    }
+    let turn = 0.5 * TURN * shortest;
+    let mut factors: Vec<(f64, f64)> = Vec::with_capacity(2 * points.len());
+    for (k, &(time, _)) in points.iter().enumerate() {
+        // Half before the point and half after it, so that the way is right at both ends.
+        let before = if k == 0 { 0.0 } else { slopes[k - 1] };
+        let after = slopes.get(k).copied().unwrap_or(0.0);
+        factors.push((time - turn, before / steepest));
+        factors.push((time + turn, after / steepest));
+    }
+    Ok((displacement.map(|way| way.map(|way| way * steepest)), Curve { points: factors }))
 }
 
 pub(super) fn pairs(list: &[[f64; 2]]) -> Vec<(f64, f64)> {

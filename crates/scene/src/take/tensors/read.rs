@@ -40,6 +40,11 @@ pub fn frame_from_bytes(bytes: &[u8]) -> Result<Frame, FrameFileError> {
             let angles = same_length("colliders", file.f64s("colliders.angle")?, positions.len())?;
             positions.into_iter().zip(angles).map(|(position, angle)| Pose { position, angle }).collect()
         },
+        supports: {
+            let forces = file.vectors("supports.force")?;
+            let works = same_length("supports", file.f64s("supports.work")?, forces.len())?;
+            forces.into_iter().zip(works).map(|(force, work)| SupportRecord { force, work }).collect()
+        },
         particles,
     };
     frame.check()?;

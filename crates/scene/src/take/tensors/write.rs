@@ -127,6 +127,8 @@ pub fn frame_to_bytes(frame: &Frame) -> Result<Vec<u8>, FrameFileError> {
     t.numbers("energies.crack", std::iter::once(e.crack));
     t.points("colliders.position", frame.colliders.iter().map(|pose| &pose.position));
     t.numbers("colliders.angle", frame.colliders.iter().map(|pose| pose.angle));
+    t.vectors("supports.force", frame.supports.iter().map(|support| &support.force));
+    t.numbers("supports.work", frame.supports.iter().map(|support| support.work));
 
     // One entry only: the header keeps the order of a hash map.
     let about = HashMap::from([("format".to_owned(), FORMAT.to_owned())]);
