@@ -20,6 +20,8 @@ pub const CASES: &[Case] = &[
     cases::impacted_notch::CASE,
     cases::branching_plate::CASE,
     cases::kink_angles::CASE,
+    cases::shear_notch::CASE,
+    cases::wing_cracks::CASE,
     cases::three_holes::CASE,
     cases::cantilever::CASE,
     cases::bar_wave::CASE,
