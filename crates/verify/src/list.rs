@@ -25,6 +25,7 @@ pub const CASES: &[Case] = &[
     cases::three_holes::CASE,
     cases::cantilever::CASE,
     cases::bar_wave::CASE,
+    cases::bar_between_supports::CASE,
     cases::spinning_disc::CASE,
     cases::ringing_plate::CASE,
     cases::free_flight::FLIGHT,

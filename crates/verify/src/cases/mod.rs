@@ -1,5 +1,6 @@
 //! One file per case: setup, reference, source.
 
+pub(crate) mod bar_between_supports;
 pub(crate) mod bar_wave;
 pub(crate) mod branching_plate;
 pub(crate) mod cantilever;
