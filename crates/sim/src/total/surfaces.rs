@@ -13,6 +13,9 @@ const SAME: f64 = 1e-9;
 /// beside it.
 const SAME_SIDE: f64 = 0.5e-6;
 
+/// What tells a vertex from all others: the bits of its place at rest, and the ring or the face that it is of.
+pub(super) type VertexKey = [u64; 3];
+
 /// Which probe carries a vertex.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Carrier {
@@ -58,7 +61,7 @@ impl Surfaces {
     }
 
     /// What tells a vertex from all others, whatever their numbers are: its place at rest, to the bit, and its side.
-    pub(super) fn key(&self, vertex: u32) -> [u64; 3] {
+    pub(super) fn key(&self, vertex: u32) -> VertexKey {
         let rest = self.surface.vertex(vertex).rest;
         let side = match self.carriers[vertex as usize] {
             Carrier::Ring { ring, .. } => 3 * u64::from(ring),

@@ -4,7 +4,7 @@ use super::lattice::Lattice;
 use super::motion::Motion;
 use super::probes::Probes;
 use super::supports::HeldFields;
-use super::surfaces::{Surfaces, can_meet};
+use super::surfaces::{Surfaces, VertexKey, can_meet};
 use crate::contact::impulses::{Impulse, Meetings, Share, allowed};
 use crate::contact::meeting::{Meeting, meeting};
 use crate::contact::neighbours::Neighbours;
@@ -45,10 +45,18 @@ pub(super) struct Touching {
     last: LastImpulses,
 }
 
+/// An impulse and what tells its vertex from others, whatever their numbers are.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+struct Kept {
+    key: VertexKey,
+    impulse: Impulse,
+}
+
 /// The impulses of the last step.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct LastImpulses {
-    impulses: Vec<Impulse>,
+    /// Vertices rising.
+    impulses: Vec<Kept>,
     /// Time in which they acted [s].
     kick: f64,
 }
@@ -59,16 +67,15 @@ impl LastImpulses {
     /// # Errors
     /// [`SimulationError::BadState`](crate::SimulationError::BadState)
     pub(super) fn check(&self) -> Fits {
-        saved::finite("an impulse", self.impulses.iter().flat_map(|i| [&i.normal, &i.tangential]))?;
-        saved::ensure(self.impulses.is_sorted_by_key(|i| i.vertex), "an impulse")?;
+        saved::finite("an impulse", self.impulses.iter().flat_map(|k| [&k.impulse.normal, &k.impulse.tangential]))?;
         saved::finite("an impulse", [&self.kick])
     }
 
     fn of(&self, vertex: u32, kick: f64) -> Impulse {
         let scale = if self.kick > 0.0 { kick / self.kick } else { 0.0 };
-        match self.impulses.binary_search_by_key(&vertex, |impulse| impulse.vertex) {
+        match self.impulses.binary_search_by_key(&vertex, |kept| kept.impulse.vertex) {
             Ok(found) => {
-                let Impulse { normal, tangential, .. } = self.impulses[found];
+                let Impulse { normal, tangential, .. } = self.impulses[found].impulse;
                 Impulse { vertex, normal: normal * scale, tangential: tangential * scale }
             }
             Err(_) => Impulse { vertex, normal: 0.0, tangential: 0.0 },
@@ -134,8 +141,8 @@ impl Touching {
         }
         let Moment { scene, probes, cracks, time_step, .. } = *moment;
         if self.is_stale {
-            let before = std::mem::replace(surfaces, Surfaces::new(scene, probes, cracks));
-            self.last.impulses = renumbered(&self.last.impulses, &before, surfaces);
+            *surfaces = Surfaces::new(scene, probes, cracks);
+            self.last.impulses = renumbered(&self.last.impulses, surfaces);
             if !self.neighbours.is_empty() {
                 self.moved = f64::INFINITY;
             }
@@ -200,7 +207,9 @@ impl Touching {
         if self.meetings.is_empty() {
             return 0.0;
         }
-        self.last.impulses.extend(self.meetings.impulses());
+        let Some(surfaces) = &self.surfaces else { return 0.0 };
+        let kept = |impulse: Impulse| Kept { key: surfaces.key(impulse.vertex), impulse };
+        self.last.impulses.extend(self.meetings.impulses().map(kept));
         self.last.kick = kick;
         -self.meetings.work_on_held(&motion.velocity)
     }
@@ -225,21 +234,19 @@ fn shares_of(
     }
 }
 
-/// The impulses with the numbers that their vertices have now: those at the same place at rest, on the same side of a
-/// crack.
-fn renumbered(impulses: &[Impulse], before: &Surfaces, now: &Surfaces) -> Vec<Impulse> {
+/// The impulses with the numbers that their vertices have now; those of vertices that are no more are left out.
+fn renumbered(impulses: &[Kept], now: &Surfaces) -> Vec<Kept> {
     if impulses.is_empty() {
         return Vec::new();
     }
-    let mut carriers: Vec<_> = (0..now.surface.len() as u32).map(|v| (now.key(v), v)).collect();
-    carriers.sort_unstable();
-    let number = |impulse: &Impulse| {
-        let key = before.key(impulse.vertex);
-        let found = carriers.binary_search_by(|(k, _)| k.cmp(&key)).ok()?;
-        Some(Impulse { vertex: carriers[found].1, ..*impulse })
+    let mut vertices: Vec<(VertexKey, u32)> = (0..now.surface.len() as u32).map(|v| (now.key(v), v)).collect();
+    vertices.sort_unstable();
+    let number = |kept: &Kept| {
+        let found = vertices.binary_search_by(|(key, _)| key.cmp(&kept.key)).ok()?;
+        Some(Kept { impulse: Impulse { vertex: vertices[found].1, ..kept.impulse }, ..*kept })
     };
-    let mut all: Vec<Impulse> = impulses.iter().filter_map(number).collect();
-    all.sort_unstable_by_key(|impulse| impulse.vertex);
+    let mut all: Vec<Kept> = impulses.iter().filter_map(number).collect();
+    all.sort_unstable_by_key(|kept| kept.impulse.vertex);
     all
 }
 
