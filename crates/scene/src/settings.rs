@@ -203,7 +203,7 @@ pub struct GrowthSettings {
 /// When a tip divides into two, and how.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Branching {
-    /// J / G_c from which on a tip divides, above 1.
+    /// What a tip would release at rest, over G_c, from which on it divides; above 1.
     pub release_ratio: f64,
     /// Angle between each new tip and the old direction [rad].
     pub half_angle: f64,

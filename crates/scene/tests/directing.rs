@@ -37,7 +37,7 @@ fn keyframes_count_frames() {
 fn branching_is_off_on_or_told() {
     let branching = |rest: &str| plate(&format!("[grid]\nparticle_spacing = 0.25\n[growth]\n{rest}")).growth.branching;
     assert_eq!((branching(""), branching("branching = false\n")), (None, None));
-    let usual = Branching { release_ratio: 2.0, half_angle: 27_f64.to_radians(), spacing: 6.0 };
+    let usual = Branching { release_ratio: 3.0, half_angle: 27_f64.to_radians(), spacing: 6.0 };
     assert_eq!(branching("branching = true\n"), Some(usual));
     let told = Branching { half_angle: 20_f64.to_radians(), spacing: 1.0, ..usual };
     assert_eq!(branching("branching = { half_angle = 20, spacing = 1 }\n"), Some(told));

@@ -35,8 +35,9 @@ pub(crate) trait Solver: Snapshot + Observed + std::fmt::Debug + Send {
     fn check(&self, time: f64) -> Result<(), SimulationError>;
 
     /// Divides the material by the cracks as they are now: `changed` ends have got new points at rest since the last
-    /// call, or have become something else.
-    fn recut(&mut self, cracks: &Cracks, changed: &[TipId]);
+    /// call, or have become something else. Returns the energy that this has taken out of the body, as far as it is
+    /// known [J/m].
+    fn recut(&mut self, cracks: &Cracks, changed: &[TipId]) -> f64;
 
     /// The solver as one whose tips can go a part of an increment; none where they jump from one to the next.
     fn sliding(&self) -> Option<&dyn SlidingTips>;

@@ -161,7 +161,7 @@ pub struct GrowthKeys {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct BranchingKeys {
-    /// A tip divides when its energy release rate is this many times what one tip needs, above 1. Default: 2.
+    /// A tip divides when what it would release at rest is this many times what one tip needs, above 1. Default: 3.
     #[schemars(transform = RELEASE_RATIO.bounds())]
     pub release_ratio: Option<f64>,
     /// Angle in degrees between each new tip and the old direction, above 0 and below 90. Default: 27.

@@ -131,7 +131,7 @@ pub(crate) const CELLS: Range = within(1e-3, 1e4, "cells");
 pub(crate) const BENDING: Range = not_negative(1e3, "");
 /// A factor on the speed limit.
 pub(crate) const SPEED_FACTOR: Range = not_negative(1e9, "");
-/// J / G_c at which a tip divides.
+/// Release of a tip at rest over G_c at which it divides.
 pub(crate) const RELEASE_RATIO: Range = Range { ends: [false, true], ..within(1.0, 1e9, "") };
 /// Flaws per area.
 pub(crate) const FLAW_DENSITY: Range = not_negative(1e24, "1/m²");

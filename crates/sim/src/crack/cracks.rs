@@ -114,7 +114,33 @@ impl Cracks {
     pub(crate) fn lines(&self, points: impl Fn(usize, &Crack) -> Vec<Point>, reach: f64) -> Vec<CrackLine> {
         // A line from a particle inside the body to a node outside may pass a mouth by as much as the kernel reaches.
         let beyond = 2.0 * reach;
-        self.iter().enumerate().map(|(i, crack)| crack.line(i, points(i, crack), beyond)).collect()
+        let of = |(i, crack): (usize, &Crack)| {
+            let mut line = crack.line(i, points(i, crack), beyond);
+            line.trunk = self.way_along_trunk(crack, &points, 5.0 * reach);
+            line
+        };
+        self.iter().enumerate().map(of).collect()
+    }
+
+    /// The way along the crack that a crack leaves at a point of that one to there, over `length` [m], that point left
+    /// out; empty where it leaves none so.
+    fn way_along_trunk(&self, crack: &Crack, points: &impl Fn(usize, &Crack) -> Vec<Point>, length: f64) -> Vec<Point> {
+        let CrackEnd::Junction { crack: number } = crack.end(End::Start) else { return Vec::new() };
+        let Some(trunk) = self.get(number as usize) else { return Vec::new() };
+        let Some(at) = trunk.points.iter().position(|p| *p == crack.points[0]) else { return Vec::new() };
+        if at == 0 || at + 1 == trunk.points.len() {
+            return Vec::new();
+        }
+        let of_trunk = points(number as usize, trunk);
+        let mut left = length;
+        let is_within = |k: &usize| {
+            let is_within = left > 0.0;
+            left -= (of_trunk[*k + 1] - of_trunk[*k]).norm();
+            is_within
+        };
+        let mut way: Vec<Point> = (0..at).rev().take_while(is_within).map(|k| of_trunk[k]).collect();
+        way.reverse();
+        way
     }
 
     /// Adds a crack. Returns its number.

@@ -86,6 +86,9 @@ pub(crate) struct CrackLine {
     pub(crate) start: LineEnd,
     /// Last point.
     pub(crate) end: LineEnd,
+    /// Where it leaves another crack at a point of that one: the way of the other one to there, that point left out
+    /// [m]. Empty: it leaves none so. See [`SegmentKind::AlongTrunk`].
+    pub(crate) trunk: Vec<Point>,
 }
 
 /// A pair's share in one field.
@@ -116,6 +119,9 @@ struct Line {
     of: Vec<u32>,
     /// Whether it has a continuation beyond a junction.
     has_junction: bool,
+    /// Within so far of its start, along each axis [m], nodes count as around it: farther away none sees both the trunk
+    /// and what it goes on as, unless across the branch.
+    around_start: f64,
 }
 
 impl Line {
@@ -145,6 +151,12 @@ enum SegmentKind {
     AheadOfTip,
     /// Continuation beyond a junction with the crack named; counts for pairs that cross that one.
     BeyondJunction(u32),
+    /// Along the crack that it leaves, to the point where it does; counts for nodes around that point.
+    ///
+    /// Three cracks that end in a point part what is around it in three, and of two of the three a node is told from
+    /// which side they are crossed: the trunk with what it goes on as, and the trunk with the branch. Mirrored branches
+    /// part alike, whichever of them goes on.
+    AlongTrunk,
 }
 
 /// The cracks of a scene, ready to divide pairs.
@@ -170,7 +182,7 @@ impl Division {
         particle_spacing: f64,
         reach: f64,
     ) -> Self {
-        let lines: Vec<Line> = lines.iter().map(|l| prepare(l, tip_division, cut, cell_size)).collect();
+        let lines: Vec<Line> = lines.iter().map(|l| prepare(l, tip_division, cut, cell_size, reach)).collect();
         let mut buckets: FxHashMap<(i64, i64), Vec<(u32, u32)>> = FxHashMap::default();
         for (line_index, line) in lines.iter().enumerate() {
             for (segment_index, &(a, b)) in line.segments.iter().enumerate() {
@@ -243,7 +255,7 @@ impl Division {
     pub(crate) fn for_each_crossed(&self, particle: Point, node: Point, mut visit: impl FnMut(u32, usize)) {
         for segments in self.bucket(particle).chunk_by(|s, t| s.0 == t.0) {
             let line = &self.lines[segments[0].0 as usize];
-            for segment in line.meeting(segments, particle, node, |_| true).crossed {
+            for segment in line.meeting(segments, particle, node, |kind| kind != SegmentKind::AlongTrunk).crossed {
                 visit(line.crack, line.of[segment as usize] as usize);
             }
         }
@@ -255,7 +267,8 @@ impl Division {
         let cracks = self.bucket(first).chunk_by(|s, t| s.0 == t.0);
         let lines = cracks.map(|segments| (&self.lines[segments[0].0 as usize], segments));
         lines.filter(|(line, _)| counts(line.crack)).any(|(line, segments)| {
-            let Meeting { side, at_node, .. } = line.meeting(segments, first, second, |_| true);
+            let Meeting { side, at_node, .. } =
+                line.meeting(segments, first, second, |kind| kind != SegmentKind::AlongTrunk);
             if at_node { side == Some(Side::Below) } else { side.is_some() }
         })
     }
@@ -320,7 +333,7 @@ fn split(shares: Vec<Share>, crack: u32, cut: PairCut) -> Vec<Share> {
     result
 }
 
-fn prepare(line: &CrackLine, tip_division: TipDivision, cut: TipCut, cell_size: f64) -> Line {
+fn prepare(line: &CrackLine, tip_division: TipDivision, cut: TipCut, cell_size: f64, reach: f64) -> Line {
     let p = &line.points;
     let n = p.len();
     let ahead_of_end = (p[n - 1] - p[n - 2]).normalize();
@@ -349,12 +362,21 @@ fn prepare(line: &CrackLine, tip_division: TipDivision, cut: TipCut, cell_size: 
         segments.push((p[n - 1], point));
         of.push(n as u32 - 2);
     }
-    if let Some(point) = carry_on(line.start, p[0], ahead_of_start) {
-        segments.push((point, p[0]));
-        of.push(0);
+    if line.trunk.is_empty() {
+        if let Some(point) = carry_on(line.start, p[0], ahead_of_start) {
+            segments.push((point, p[0]));
+            of.push(0);
+        }
+    } else {
+        let along: Vec<Point> = line.trunk.iter().copied().chain([p[0]]).collect();
+        for w in along.windows(2) {
+            segments.push((w[0], w[1]));
+            kinds.push(SegmentKind::AlongTrunk);
+            of.push(0);
+        }
     }
     let has_junction = kinds.iter().any(|k| matches!(k, SegmentKind::BeyondJunction(_)));
-    Line { crack: line.crack, segments, tips, cut, kinds, of, has_junction }
+    Line { crack: line.crack, segments, tips, cut, kinds, of, has_junction, around_start: 2.0 * reach * cell_size }
 }
 
 /// The crack across which two fields face each other, and the side of the first; none when they differ by more than one
@@ -406,6 +428,7 @@ fn divide(
 ) -> Option<PairCut> {
     let counts = |kind: SegmentKind| match kind {
         SegmentKind::BeyondJunction(other) => crossed.contains(&other),
+        SegmentKind::AlongTrunk => (node - line.segments[0].0).amax() <= line.around_start,
         SegmentKind::Real | SegmentKind::AheadOfTip => true,
     };
     let met = line.meeting(segments, particle, node, counts);
@@ -449,7 +472,13 @@ mod tests {
     fn any_lines(ends: impl Strategy<Value = LineEnd> + Clone) -> impl Strategy<Value = Vec<CrackLine>> {
         let line = (prop::collection::vec(any_point(), 2..6), ends.clone(), ends);
         prop::collection::vec(line, 1..4).prop_map(|lines| {
-            let number = |(crack, (points, start, end))| CrackLine { crack: crack as u32, points, start, end };
+            let number = |(crack, (points, start, end))| CrackLine {
+                crack: crack as u32,
+                points,
+                start,
+                end,
+                trunk: Vec::new(),
+            };
             lines.into_iter().enumerate().map(number).collect()
         })
     }
@@ -517,6 +546,53 @@ mod tests {
             }
         }
 
+        /// Truth: the sectors of the drawing. Around the point where a crack divides, a node has a field for each
+        /// of the three sectors and no more, wherever the point lies and whichever way round it is drawn.
+        #[test]
+        fn a_division_parts_what_is_around_it_in_three(
+            x in 6.0_f64..7.0, y in 6.0_f64..7.0, turn in 0.0_f64..6.3, spread in 0.2_f64..1.0, level in any::<bool>(),
+        ) {
+            // Level: along a row of nodes, with nodes and particles on the axis of symmetry.
+            let (x, y, turn) = if level { (x, 6.0, 0.0) } else { (x, y, turn) };
+            let placed = |angle: f64, r: f64| {
+                let (sine, cosine) = (turn + angle).sin_cos();
+                Point::new(x + r * cosine, y + r * sine)
+            };
+            let from = |angle: f64| move |k: i32| placed(angle, 0.25 * f64::from(k));
+            let half = std::f64::consts::PI;
+            let behind: Vec<Point> = if level { (1..=24).rev().map(|k| Point::new(x - 0.25 * f64::from(k), y)).collect() }
+                else { (1..=24).rev().map(from(half)).collect() };
+            let at = Point::new(x, y);
+            let points: Vec<Point> = behind.iter().copied().chain([at]).chain((1..=20).map(from(spread))).collect();
+            let branch: Vec<Point> = [at].into_iter().chain((1..=20).map(from(-spread))).collect();
+            let trunk = CrackLine { crack: 0, points, start: LineEnd::Open(1.0), end: LineEnd::Tip, trunk: Vec::new() };
+            let start = LineEnd::Junction { crack: 0, beyond: 2.0 };
+            let branch = CrackLine { crack: 1, points: branch, start, end: LineEnd::Tip, trunk: behind[4..].to_vec() };
+            let division = Division::new(&[trunk, branch], TipDivision::PartlyCut, TipCut::tied(0.8), 1.0, SPACING, 1.0);
+            let sector = |p: Point| {
+                let angle = (p - at).y.atan2((p - at).x) - turn;
+                let angle = angle.sin().atan2(angle.cos());
+                // Above, between, below.
+                if angle > spread { 0 } else if angle < -spread { 2 } else { 1 }
+            };
+            for (i, j) in (3..11).flat_map(|i| (3..11).map(move |j| (i, j))) {
+                let node = Point::new(f64::from(i), f64::from(j));
+                let mut fields: Vec<(CrossedSet, i32)> = Vec::new();
+                for (k, l) in (-2..2).flat_map(|k| (-2..2).map(move |l| (k, l))) {
+                    let particle = node + Vector::new(0.25 + 0.5 * f64::from(k), 0.25 + 0.5 * f64::from(l));
+                    if (particle - at).norm() > 2.0 {
+                        continue;
+                    }
+                    let shares = division.pair(particle, node);
+                    prop_assert_eq!(shares.len(), 1);
+                    fields.push((shares[0].crossed.clone(), sector(particle)));
+                }
+                for (a, b) in fields.iter().flat_map(|a| fields.iter().map(move |b| (a, b))) {
+                    prop_assert_eq!(a.0 == b.0, a.1 == b.1, "node {} {:?} {:?}", node, a, b);
+                }
+            }
+        }
+
         /// Truth: the difference quotient. How a share changes as its particle moves along the tip.
         #[test]
         fn the_gradient_of_a_share_is_its_slope(
@@ -527,7 +603,7 @@ mod tests {
             let rotation = nalgebra::Rotation2::new(turn);
             let placed = |x: f64, y: f64| Point::new(5.0, 5.0) + rotation * Vector::new(x, y);
             let points = vec![placed(-4.0, 0.0), placed(0.0, 0.0)];
-            let line = CrackLine { crack: 0, points, start: LineEnd::Tip, end: LineEnd::Tip };
+            let line = CrackLine { crack: 0, points, start: LineEnd::Tip, end: LineEnd::Tip, trunk: Vec::new() };
             let division = division(&[line], TipDivision::PartlyCut, TipCut::PLAIN);
             let node = placed(-0.5, -0.3);
             let far = |x: f64, y: f64| {

@@ -22,6 +22,7 @@ pub(crate) fn split(particles: &Particles, cracks: &[Crack], cell_size: f64, num
                 points: c.points.clone(),
                 start: end(c.end(End::Start)),
                 end: end(c.end(End::End)),
+                trunk: Vec::new(),
             }
         })
         .collect();

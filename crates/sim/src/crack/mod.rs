@@ -304,7 +304,7 @@ impl Crack {
             CrackEnd::Mouth => LineEnd::Open(beyond),
             CrackEnd::Junction { crack } => LineEnd::Junction { crack, beyond },
         };
-        CrackLine { crack: crack as u32, points, start: end(self.ends[0]), end: end(self.ends[1]) }
+        CrackLine { crack: crack as u32, points, start: end(self.ends[0]), end: end(self.ends[1]), trunk: Vec::new() }
     }
 
     /// The record of a tip for a frame; `position` [m] and `direction` [rad] are the current ones, `interval` [s] the

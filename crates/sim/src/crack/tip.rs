@@ -7,6 +7,17 @@ use fissure_plane::Vector;
 use fissure_scene::TipState;
 use serde::{Deserialize, Serialize};
 
+/// How a tip runs, averaged over the last moments.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Pace {
+    /// [m/s]
+    pub(crate) speed: f64,
+    /// J [J/m²].
+    pub(crate) j_integral: f64,
+    /// What [`Tip::run`] was at the last moment [m].
+    run: f64,
+}
+
 /// A crack tip.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Tip {
@@ -31,6 +42,8 @@ pub(crate) struct Tip {
     /// Energy that the tip has taken out of the body beyond the cost of its growth [J/m], never negative. It pays for
     /// growth to come.
     pub(crate) balance: f64,
+    /// Speed [m/s] and J [J/m²], averaged over the last moments while it runs.
+    pub(crate) pace: Pace,
     /// Direction of growth asked for by the stress, averaged over the last moments; at rest, not normalised. Zero:
     /// nothing known.
     pub(crate) heading: Vector,
@@ -50,6 +63,7 @@ impl Tip {
             run_at_frame: 0.0,
             assessment: Assessment::default(),
             balance: 0.0,
+            pace: Pace::default(),
             heading: Vector::zeros(),
         }
     }
@@ -58,6 +72,36 @@ impl Tip {
     /// ligament or into two branches, counts as it would have been run.
     pub(crate) fn run(&self) -> f64 {
         self.grown - self.ahead_of_limit.max(0.0)
+    }
+
+    /// Keeps the pace after a step of `time_step` [s] in which `j_integral` [J/m²] was measured; what lies `window` [s]
+    /// back counts 1/e. A tip that does not run has none.
+    pub(crate) fn keep_pace(&mut self, j_integral: f64, time_step: f64, window: f64) {
+        let run = self.run();
+        let speed = (run - self.pace.run) / time_step;
+        if self.state != TipState::Growing {
+            self.pace = Pace { speed: 0.0, j_integral, run };
+        } else if j_integral.is_finite() {
+            let part = 1.0 - (-time_step / window).exp();
+            self.pace.speed += (speed - self.pace.speed) * part;
+            self.pace.j_integral += (j_integral - self.pace.j_integral) * part;
+            self.pace.run = run;
+        }
+    }
+
+    /// Makes this tip and a new one of what it was, at the first length of two branches: alike in all that decides how
+    /// they go on. Returns the new one.
+    pub(crate) fn divide(&mut self, length: f64) -> Self {
+        self.state = TipState::Growing;
+        self.since_division = 0.0;
+        self.balance *= 0.5;
+        self.pace = Pace { run: self.run(), ..Pace::default() };
+        // Each branch goes its own way from here.
+        self.guide = None;
+        self.heading = Vector::zeros();
+        let mut twin = Self { grown: length, run_at_frame: 0.0, ..self.clone() };
+        twin.pace.run = twin.run();
+        twin
     }
 
     /// Checks a tip that was read.

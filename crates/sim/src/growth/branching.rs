@@ -1,8 +1,10 @@
 //! Division of a tip into two.
 //!
-//! A tip that is given enough energy for two may divide: when J reaches a multiple of G_c = K_c²/E'. Where real cracks
-//! do so depends on the process zone, which a sharp crack does not have; so the multiple, the angle and the distance
-//! are the scene's.
+//! A tip that is given enough energy for two may divide: when what it would release at rest reaches a multiple of G_c =
+//! K_c²/E'. A tip that runs takes the speed at which it releases G_c and no more, J = g(v) G with G that of a tip at
+//! rest in its place and g(v) ≈ 1 − v/c_R (Freund 1990, section 6.4); what it has to spare shows in its speed. Where
+//! real cracks divide depends on the process zone as well, which a sharp crack does not have; so the multiple, the
+//! angle and the distance are the scene's.
 
 use super::advance::LAST_LIGAMENT;
 use super::barrier::first_barrier;
@@ -19,6 +21,9 @@ use fissure_scene::{Point, Scene};
 /// meet.
 const FIRST_LENGTH: f64 = 4.0;
 
+/// Least 1 − v/c_R: a tip near c_R tells no more of what there is.
+const LEAST_FACTOR: f64 = 0.05;
+
 /// The points of the two branches of a tip, from the tip on and without it, left and right as seen along the crack;
 /// none when the tip does not divide.
 pub(crate) fn branches(
@@ -34,7 +39,9 @@ pub(crate) fn branches(
     let body = &scene.bodies[cracks.of(id).body as usize];
     let enough = branching.release_ratio * critical_release(cracks, id, assessed, scene, elastic);
     let follows_exactly = tip.guide.as_ref().is_some_and(|g| g.strength() >= 1.0);
-    if follows_exactly || assessed.j_integral < enough || tip.since_division < branching.spacing {
+    let fastest = elastic[body.material_at(from)].rayleigh_wave_speed();
+    let at_rest = tip.pace.j_integral / (1.0 - tip.pace.speed / fastest).max(LEAST_FACTOR);
+    if follows_exactly || at_rest < enough || tip.since_division < branching.spacing {
         return None;
     }
     let toward = way(cracks, id, assessed, scene);

@@ -5,11 +5,10 @@ use crate::SimulationError;
 use crate::crack::Crack;
 use crate::crack::assessment::Assessment;
 use crate::crack::cracks::TipId;
-use crate::crack::tip::Tip;
 use crate::growth::{self, Advance};
 use crate::solver::Observed;
 use crate::tip::gauge::Gauge;
-use fissure_scene::{CrackEnd, End, Point, TipState, Vector};
+use fissure_scene::{CrackEnd, End, Point, TipState};
 
 /// Increments one tip may take in one step: with a step of 0.9 h/c_d and quarter cells, more would be faster than any
 /// wave.
@@ -33,6 +32,36 @@ const FAR_FROM_GROWTH: f64 = 0.7;
 /// ... is looked at only once in so many steps: with a step of half a cell's wave time or less a wave goes two cells in
 /// them, half a radius of the integral.
 const STEPS_BETWEEN_LOOKS: u32 = 4;
+
+/// Tips nearer to each other than this, in cells, may meet within an increment.
+const IN_EACH_OTHERS_WAY: f64 = 2.5;
+
+/// Time over which the pace of a tip is averaged, over the time a wave takes for a cell.
+const PACE_CELLS: f64 = 12.0;
+
+/// A tip in a step.
+#[derive(Debug)]
+struct Runner {
+    id: TipId,
+    assessed: Assessment,
+    /// Whether its speed limit lets it run at all.
+    may_run: bool,
+    /// See [`Simulation::runs`].
+    runs: bool,
+}
+
+/// What a tip does next.
+#[derive(Debug)]
+enum Decision {
+    /// It does not grow.
+    Rest,
+    /// Its speed limit holds it.
+    Wait,
+    /// It goes on through its increment.
+    GoOn,
+    Begin(Advance),
+    Divide([Vec<Point>; 2]),
+}
 
 impl Simulation {
     /// One step and what it makes the cracks do. `is_last`: the last one of a frame, after which the records of all
@@ -75,58 +104,121 @@ impl Simulation {
             }
         }
         let time = state.time + time_step;
-        for (&id, m) in live.iter().zip(&assessed) {
-            self.settle_account(id, m);
-            self.grow(id, m, time, time_step);
-        }
+        let tips = live.iter().zip(assessed).map(|(&id, assessed)| self.ready(id, assessed, time, time_step)).collect();
+        self.grow(tips, time);
         Ok(())
     }
 
-    /// Lets one tip grow as far as the energy balance and the speed limit allow within a step that ends at `time`.
-    fn grow(&mut self, id: TipId, assessed: &Assessment, time: f64, time_step: f64) {
+    /// A tip after a step that ends at `time`, ready to grow: what it may run is counted, and its account is settled.
+    fn ready(&mut self, id: TipId, assessed: Assessment, time: f64, time_step: f64) -> Runner {
+        self.settle_account(id, &assessed);
         let may_run = growth::speed_limit(&self.state.cracks, id, &self.scene, &self.elastic, time) * time_step;
-        let Some(tip) = self.state.cracks.tip_mut(id) else { return };
-        // What a tip that waits saves up is bounded; it shall not leap later.
-        let most_saved = may_run + SAVED_WAY * self.scene.cell_size;
-        tip.ahead_of_limit = (tip.ahead_of_limit - may_run).max(-most_saved);
-        tip.time_at_rest += time_step;
-        let runs = self.runs(id);
-        let assessed = &mut { *assessed };
-        for increment in 0..MOST_INCREMENTS_PER_STEP {
-            if increment > 0 {
-                let toughness = growth::toughness_ahead(&self.state.cracks, id, assessed, &self.scene);
-                assessed.fracture_toughness = toughness;
+        let window = PACE_CELLS * self.crossing_time(id);
+        if let Some(tip) = self.state.cracks.tip_mut(id) {
+            tip.keep_pace(assessed.j_integral, time_step, window);
+            // What a tip that waits saves up is bounded; it shall not leap later.
+            let most_saved = may_run + SAVED_WAY * self.scene.cell_size;
+            tip.ahead_of_limit = (tip.ahead_of_limit - may_run).max(-most_saved);
+            tip.time_at_rest += time_step;
+        }
+        Runner { id, assessed, may_run: may_run > 0.0, runs: self.runs(id) }
+    }
+
+    /// Lets tips grow as far as the energy balance and their speed limits allow, up to the time `time`.
+    ///
+    /// In rounds of an increment: all decide what they do next on what they have left of the last round, then all are
+    /// cut at once, then all slide. So no tip comes before another, and what is symmetric stays so.
+    fn grow(&mut self, mut tips: Vec<Runner>, time: f64) {
+        for round in 0..MOST_INCREMENTS_PER_STEP {
+            if round > 0 {
+                for tip in &mut tips {
+                    let cracks = &self.state.cracks;
+                    tip.assessed.fracture_toughness =
+                        growth::toughness_ahead(cracks, tip.id, &tip.assessed, &self.scene);
+                }
             }
-            let cracks = &self.state.cracks;
-            let Some(tip) = cracks.tip(id) else { return };
-            if may_run <= 0.0 || tip.ahead_of_limit > 0.0 {
-                // Held by its limit alone, a tip does not come to rest.
-                self.forget_rest(id);
+            let decided: Vec<Decision> = tips.iter().map(|tip| self.decide(tip, time)).collect();
+            let mut changed: Vec<TipId> = Vec::new();
+            let mut sliding = Vec::with_capacity(tips.len());
+            for (tip, decision) in tips.into_iter().zip(decided) {
+                if self.follow(&tip, decision, time, &mut changed) {
+                    sliding.push(tip);
+                }
+            }
+            if !changed.is_empty() {
+                self.state.crack_energy += self.solver.recut(&self.state.cracks, &changed);
+                self.counts.recuts += changed.len() as u64;
+            }
+            sliding.retain(|tip| {
+                let arrives = self.slide(tip.id, &tip.assessed, time);
+                if !arrives {
+                    self.rest(tip.id);
+                }
+                arrives
+            });
+            if sliding.is_empty() {
                 return;
             }
-            let slides = self.solver.sliding().is_some();
-            if !runs && !growth::wants_to_grow(cracks, id, assessed, &self.scene, time, slides) {
-                break;
-            }
-            if cracks.left_of_increment(id).is_none() {
-                if let Some(branches) = growth::branches(cracks, id, assessed, &self.scene, &self.elastic) {
-                    self.divide(id, branches, assessed);
-                    return;
+            tips = sliding;
+        }
+    }
+
+    /// What a tip does next.
+    fn decide(&self, tip: &Runner, time: f64) -> Decision {
+        let (cracks, scene, assessed) = (&self.state.cracks, &self.scene, &tip.assessed);
+        let Some(of) = cracks.tip(tip.id) else { return Decision::Rest };
+        if !tip.may_run || of.ahead_of_limit > 0.0 {
+            return Decision::Wait;
+        }
+        let slides = self.solver.sliding().is_some();
+        if !tip.runs && !growth::wants_to_grow(cracks, tip.id, assessed, scene, time, slides) {
+            return Decision::Rest;
+        }
+        if cracks.left_of_increment(tip.id).is_some() {
+            return Decision::GoOn;
+        }
+        if let Some(branches) = growth::branches(cracks, tip.id, assessed, scene, &self.elastic) {
+            return Decision::Divide(branches);
+        }
+        growth::next_increment(cracks, tip.id, assessed, scene, time).map_or(Decision::Wait, Decision::Begin)
+    }
+
+    /// Does what a tip has decided; `changed` are the tips that are to be cut before any slides, those that others have
+    /// changed in this round too. Whether the tip is to slide.
+    fn follow(&mut self, tip: &Runner, decision: Decision, time: f64, changed: &mut Vec<TipId>) -> bool {
+        let id = tip.id;
+        match decision {
+            Decision::Rest => self.rest(id),
+            // Held by its limit alone, a tip does not come to rest.
+            Decision::Wait => self.forget_rest(id),
+            Decision::GoOn => {
+                if let Some(tip) = self.state.cracks.tip_mut(id) {
+                    // It may have come to rest on its way.
+                    tip.state = TipState::Growing;
                 }
-                let Some(advance) = growth::next_increment(cracks, id, assessed, &self.scene, time) else { return };
-                self.begin_increment(id, &advance, assessed);
-                if self.state.cracks.end(id) != CrackEnd::Tip {
-                    return;
-                }
-            } else if let Some(tip) = self.state.cracks.tip_mut(id) {
-                // It may have come to rest on its way.
-                tip.state = TipState::Growing;
+                return true;
             }
-            if !self.slide(id, assessed, time) {
-                break;
+            Decision::Divide(branches) => changed.extend(self.divide(id, branches, &tip.assessed)),
+            Decision::Begin(advance) => {
+                // What another tip has just put in its way it sees.
+                let from = self.state.cracks.position(id);
+                let is_near = |&other: &TipId| {
+                    (self.state.cracks.position(other) - from).norm() < IN_EACH_OTHERS_WAY * self.scene.cell_size
+                };
+                let advance = if changed.iter().any(is_near) {
+                    growth::next_increment(&self.state.cracks, id, &tip.assessed, &self.scene, time)
+                } else {
+                    Some(advance)
+                };
+                let Some(advance) = advance else { return false };
+                self.begin_increment(id, &advance, &tip.assessed);
+                if !advance.points.is_empty() {
+                    changed.push(id);
+                }
+                return self.state.cracks.end(id) == CrackEnd::Tip;
             }
         }
-        self.rest(id);
+        false
     }
 
     /// Whether a tip is on its way, so that its account alone says how far it goes. J swings by a half from step to
@@ -163,17 +255,21 @@ impl Simulation {
             }
             _ => {
                 let length = cracks.grow(id, &advance.points);
-                let most = growth::critical_release(cracks, id, assessed, &self.scene, &self.elastic);
-                self.state.crack_energy += assessed.released.clamp(0.0, most) * length;
+                self.book_leap(id, assessed, length);
             }
         }
+        let cracks = &mut self.state.cracks;
         if let Some(tip) = cracks.tip_mut(id) {
             tip.state = advance.state;
         }
         cracks.set_end(id, advance.end);
-        if !advance.points.is_empty() {
-            self.solver.recut(&self.state.cracks, &[id]);
-            self.counts.recuts += 1;
+    }
+
+    /// Books what a tip that jumps takes by its J; where tips slide, what a leap takes is what its cut does.
+    fn book_leap(&mut self, id: TipId, assessed: &Assessment, length: f64) {
+        if self.solver.sliding().is_none() {
+            let most = growth::critical_release(&self.state.cracks, id, assessed, &self.scene, &self.elastic);
+            self.state.crack_energy += assessed.released.clamp(0.0, most) * length;
         }
     }
 
@@ -192,30 +288,17 @@ impl Simulation {
         }
     }
 
-    /// Divides a tip: it goes on along the left branch, a new crack that begins at it along the right one.
-    fn divide(&mut self, id: TipId, branches: [Vec<Point>; 2], assessed: &Assessment) {
-        let from = self.state.cracks.position(id);
+    /// Divides a tip: it goes on along the left branch, a new crack that begins at it along the right one, both alike.
+    fn divide(&mut self, id: TipId, branches: [Vec<Point>; 2], assessed: &Assessment) -> Vec<TipId> {
         let [left, right] = branches;
+        let cracks = &mut self.state.cracks;
+        let points = [vec![cracks.position(id)], right].concat();
         // The first length of both together releases what one straight on would have.
-        let length = self.state.cracks.grow(id, &left);
-        self.state.crack_energy += assessed.released.max(0.0) * length;
-        let mut points = vec![from];
-        points.extend(right);
-        let mut twin = Tip::new(None);
-        twin.add_grown(points.windows(2).map(|w| (w[1] - w[0]).norm()).sum());
-        if let Some(tip) = self.state.cracks.tip_mut(id) {
-            tip.state = TipState::Growing;
-            tip.since_division = 0.0;
-            // Each branch goes its own way from here.
-            tip.guide = None;
-            tip.heading = Vector::zeros();
-            twin.state = tip.state;
-            twin.since_division = 0.0;
-        }
-        let body = self.state.cracks.of(id).body;
-        let new = self.state.cracks.add(Crack::branch(id.crack, body, points, twin));
-        self.solver.recut(&self.state.cracks, &[id, TipId::new(new, End::End)]);
-        self.counts.recuts += 1;
+        let length = cracks.grow(id, &left);
+        let Some(twin) = cracks.tip_mut(id).map(|tip| tip.divide(length)) else { return Vec::new() };
+        let new = cracks.add(Crack::branch(id.crack, cracks.of(id).body, points, twin));
+        self.book_leap(id, assessed, length);
+        vec![id, TipId::new(new, End::End)]
     }
 
     /// Measures every live tip now.

@@ -61,6 +61,7 @@ use near::Near;
 use probes::Probes;
 use std::sync::Arc;
 use supports::{HeldStep, Supports};
+use tie::TieUnits;
 use ties::Ties;
 use touching::{LastImpulses, Moment, Touching};
 
@@ -294,10 +295,13 @@ impl Solver for Total {
         range::check_range(&self.lattice, &self.motion, time)
     }
 
-    fn recut(&mut self, cracks: &Cracks, changed: &[TipId]) {
+    fn recut(&mut self, cracks: &Cracks, changed: &[TipId]) -> f64 {
         let points_before = self.probes.points_of_cracks();
         let boxes = recut::changed_boxes(cracks, changed, self.lattice.grid.cell_size);
-        self.lattice.recut(cracks, &boxes, &mut self.motion);
+        let units = TieUnits::of(&self.lattice);
+        let held = self.ties.held(&self.motion, units);
+        let divides = changed.iter().any(|id| id.crack >= points_before.len());
+        let lost = self.lattice.recut(cracks, &boxes, divides, &mut self.motion);
         self.probes.refresh(&self.lattice, cracks, changed, &boxes);
         let near = Near::new(&self.lattice, &boxes, cracks, changed, &points_before);
         self.loads.refresh(&near, &self.lattice);
@@ -306,6 +310,7 @@ impl Solver for Total {
         self.contacts.refresh(&near, &self.lattice, cracks);
         self.ties.refresh(&near, &self.lattice, &self.motion, cracks);
         self.touching.change();
+        held - self.ties.held(&self.motion, units) + lost
     }
 
     fn begin_run(&mut self) {

@@ -3,7 +3,8 @@
 //! A (particle, node) weight that moves to another field takes its share of the node's momentum along, so momentum is
 //! conserved to round-off and kinetic energy can only fall (fields merge inelastically). A field that is new takes the
 //! displacement of the fields its mass came from, so that at the moment of the cut the strain does not change; a field
-//! that was there keeps its own.
+//! that was there keeps its own. Where a tip divides, what lies between the branches is made of both sides of the
+//! crack; a further field of it takes the mean, whether it was there or not, or mirrored branches would differ.
 
 use super::lattice::Lattice;
 use super::motion::Motion;
@@ -60,15 +61,23 @@ fn changed_box(crack: &Crack, end: End, cell_size: f64) -> (Point, Point) {
 }
 
 impl Lattice {
-    /// Divides the lattice by the cracks as they are now; stencils change within `boxes`.
-    pub(super) fn recut(&mut self, cracks: &Cracks, boxes: &[(Point, Point)], motion: &mut Motion) {
+    /// Divides the lattice by the cracks as they are now; stencils change within `boxes`. Returns the kinetic energy
+    /// that is lost where fields merge [J/m]. `divides`: a tip has become two.
+    pub(super) fn recut(
+        &mut self,
+        cracks: &Cracks,
+        boxes: &[(Point, Point)],
+        divides: bool,
+        motion: &mut Motion,
+    ) -> f64 {
         self.set_cracks(cracks);
-        self.recut_particles(boxes, motion);
+        let lost = self.recut_particles(boxes, divides, motion);
         self.invert_masses();
+        lost
     }
 
-    /// Cuts the particles in `boxes` anew.
-    fn recut_particles(&mut self, boxes: &[(Point, Point)], motion: &mut Motion) {
+    /// Cuts the particles in `boxes` anew. Returns the kinetic energy that is lost [J/m].
+    fn recut_particles(&mut self, boxes: &[(Point, Point)], divides: bool, motion: &mut Motion) -> f64 {
         let mut affected: Vec<usize> = Vec::new();
         for &(low, high) in boxes {
             // Those that no crack is near any more become whole again.
@@ -104,7 +113,7 @@ impl Lattice {
             self.note_changes(p, &entries, &mut changes);
             stencils.push((p, entries));
         }
-        self.move_weights(&changes, motion);
+        let lost = self.move_weights(&changes, divides, motion);
         self.layout.cut.replace(stencils);
         for (&p, strain) in affected.iter().zip(strains) {
             let misfit = strain - self.reader().gradient(p, &motion.displacement);
@@ -112,6 +121,7 @@ impl Lattice {
             let is_real = misfit.norm() > ROUND_OFF * strain.norm();
             self.layout.cut.set_misfit(p, if is_real { misfit } else { Matrix::zeros() });
         }
+        lost
     }
 
     /// Notes, node by node, how the weights of a particle move between its fields.
@@ -135,14 +145,18 @@ impl Lattice {
         }
     }
 
-    /// Moves weights between the fields of nodes, and mass, momentum and displacement with them.
-    fn move_weights(&mut self, changes: &[WeightChange], motion: &mut Motion) {
+    /// Moves weights between the fields of nodes, and mass, momentum and displacement with them. Returns the kinetic
+    /// energy that is lost [J/m].
+    fn move_weights(&mut self, changes: &[WeightChange], divides: bool, motion: &mut Motion) -> f64 {
         self.layout.mass.resize(self.field_count(), 0.0);
         motion.resize(self.field_count());
         let field_changes = field_changes(changes, motion);
         let smallest = NO_MASS * self.particles.mass.iter().copied().fold(f64::INFINITY, f64::min);
+        let twice = |mass: f64, velocity: Vector| mass * velocity.norm_squared();
+        let mut lost = 0.0;
         for (field, t) in field_changes {
             let d = field as usize;
+            lost += twice(self.layout.mass[d], motion.velocity(d));
             let kept = self.layout.mass[d] - t.mass_out;
             let kept = if kept < smallest { 0.0 } else { kept };
             let total = kept + t.mass_in;
@@ -155,12 +169,17 @@ impl Lattice {
             for axis in 0..2 {
                 let momentum = kept * motion.velocity[axis][d] + t.momentum_in[axis];
                 motion.velocity[axis][d] = momentum / total;
+                let moved = &mut motion.displacement[axis][d];
                 if kept == 0.0 {
-                    motion.displacement[axis][d] = t.displacement_in[axis] / t.mass_in;
+                    *moved = t.displacement_in[axis] / t.mass_in;
+                } else if divides && d >= self.grid.len() {
+                    *moved = (kept * *moved + t.displacement_in[axis]) / total;
                 }
             }
             self.layout.mass[d] = total;
+            lost -= twice(total, motion.velocity(d));
         }
+        0.5 * lost
     }
 }
 

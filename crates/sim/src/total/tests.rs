@@ -3,7 +3,9 @@
 
 use super::field_vectors::FieldVectors;
 use super::{Total, internal_forces};
+use crate::crack::Crack;
 use crate::crack::cracks::{Cracks, TipId};
+use crate::crack::tip::Tip;
 use crate::particles::Particles;
 use crate::solver::{SlidingTips, Snapshot, Solver};
 use crate::test_scenes;
@@ -150,6 +152,75 @@ fn forces_are_the_slope_of_the_energy_wherever_a_tip_turns() {
     }
 }
 
+/// Fields of every node as (mass, displacement, velocity), each node's own sorted; with `flip` of the mirror image in
+/// y.
+fn fields_by_node(total: &Total, middle: f64, flip: bool) -> Vec<([i64; 2], Vec<[f64; 5]>)> {
+    let (lattice, h) = (&total.lattice, total.lattice.grid.cell_size);
+    let mut nodes: std::collections::BTreeMap<[i64; 2], Vec<[f64; 5]>> = std::collections::BTreeMap::new();
+    for d in 0..lattice.field_count() {
+        let (x, mass) = (lattice.position(d), lattice.mass()[d]);
+        if mass > 0.0 {
+            let sign = if flip { -1.0 } else { 1.0 };
+            let place = [(x.x / h).round() as i64, (sign * (x.y - middle) / h).round() as i64];
+            let (u, v) = (total.motion.displacement(d), total.motion.velocity(d));
+            nodes.entry(place).or_default().push([mass, u.x, sign * u.y, v.x, sign * v.y]);
+        }
+    }
+    let sorted = |mut of: Vec<[f64; 5]>| {
+        // By what differs by more than round-off.
+        of.sort_by_key(|of| [of[0], of[2]].map(|x| (1e9 * x).round() as i64));
+        of
+    };
+    nodes.into_iter().map(|(place, of)| (place, sorted(of))).collect()
+}
+
+/// Truth: the mirror. A crack in the middle of a plate that is pulled apart divides; the fields of mirrored nodes move
+/// as each other's images, when it is cut and after some steps.
+#[test]
+fn mirrored_branches_are_cut_alike() {
+    let mut scene = test_scenes::free_body(test_scenes::rectangle([0.0, 0.0], [4.0, 4.0]), 0.1);
+    scene.solver.formulation = Formulation::Total;
+    scene.solver.kernel = Kernel::Bilinear;
+    scene.solver.tip_division = TipDivision::PartlyCut;
+    test_scenes::add_crack(&mut scene, &[[0.0, 2.0], [1.53, 2.0]]);
+    for (low, speed) in [(2.0, 1.0), (-2.0, -1.0)] {
+        let half = Selection::Region(test_scenes::rectangle([-1.0, low], [5.0, low + 4.0]));
+        test_scenes::set_motion(&mut scene, half, [0.0, speed], 0.0, [0.0, 0.0]);
+    }
+    let (mut total, mut cracks) = solver(&scene);
+    let time_step = 0.5 * total.stable_time_step();
+    let run = |total: &mut Total, cracks: &Cracks, steps: usize| {
+        for _ in 0..steps {
+            total.step(cracks, 0.0, time_step, &mut |_| ()).unwrap();
+        }
+    };
+    run(&mut total, &cracks, 40);
+    let is_mirrored = |total: &Total, when: &str| {
+        let (as_is, flipped) = (fields_by_node(total, 2.0, false), fields_by_node(total, 2.0, true));
+        for ((place, of), (mirrored, image)) in as_is.iter().zip(&flipped) {
+            assert_eq!((place, of.len()), (mirrored, image.len()), "{when}");
+            let scale = [0.04, 0.1, 0.1, 1.0, 1.0];
+            for (a, b) in of.iter().zip(image) {
+                let worst = (0..5).map(|k| (a[k] - b[k]).abs() / scale[k]).fold(0.0, f64::max);
+                assert!(worst < 1e-10, "{when}: node {place:?}: {of:?} and {image:?}");
+            }
+        }
+    };
+    is_mirrored(&total, "before");
+    let h = total.lattice.grid.cell_size;
+    let from = cracks.position(TIP);
+    let branch = |sign: f64| (1..=16).map(move |k| from + Vector::new(0.89, sign * 0.45) * (0.25 * h * f64::from(k)));
+    cracks.grow(TIP, &branch(1.0).collect::<Vec<_>>());
+    let points = [from].into_iter().chain(branch(-1.0)).collect();
+    let new = cracks.add(Crack::branch(0, 0, points, Tip::new(None)));
+    total.recut(&cracks, &[TIP, TipId::new(new, End::End)]);
+    is_mirrored(&total, "cut");
+    run(&mut total, &cracks, 1);
+    is_mirrored(&total, "after a step");
+    run(&mut total, &cracks, 20);
+    is_mirrored(&total, "after steps");
+}
+
 /// Truth: Rayleigh's quotient, (K + k)/(M + k/ω²) ≤ ω². At nearly the largest step of the lattice without ties, ties
 /// included, the energy stays bounded.
 #[test]
@@ -209,7 +280,7 @@ fn a_tip_on_its_way_is_cut_as_it_was() {
         total.slide(&cracks, TIP);
         let (fields, mass) = (total.lattice.field_count(), total.lattice.mass().to_vec());
         let around = [(from - Vector::repeat(1.0), from + Vector::repeat(0.1))];
-        total.lattice.recut(&cracks, &around, &mut total.motion);
+        total.lattice.recut(&cracks, &around, false, &mut total.motion);
         assert_eq!(total.lattice.field_count(), fields);
         assert_eq!(total.lattice.mass(), mass);
     }

@@ -202,6 +202,15 @@ impl Tie {
         0.5 * self.inertia * self.opening(v).norm_squared()
     }
 
+    /// Twice what a tie holds of what the leapfrog keeps, over its stiffness [m²]: u(t − Δt) · u(t) of the stretch and
+    /// the part of the inertia.
+    pub(super) fn held_per_stiffness(&self, motion: &Motion, units: TieUnits) -> f64 {
+        let now = self.stretch(&motion.displacement);
+        let rate = self.opening(&motion.velocity);
+        let before = now - rate * motion.last_step;
+        now.dot(&before) + units.inertia_per_stiffness() * rate.norm_squared()
+    }
+
     /// Takes over from what tied the same fields before: a tie that has become stiffer, or is new between fields that
     /// lie apart, holds with the force that was there.
     pub(super) fn take_over(&mut self, before: Option<&Self>, u: &FieldVectors) {
@@ -218,11 +227,11 @@ impl Tie {
         (self.place - tip).dot(&direction) / cell_size
     }
 
-    /// Lets the drag act within a kick of `kick` [s]. Only at the length of the opening: a body that turns, and the
-    /// openings with it, is not dragged at.
-    pub(super) fn apply_drag(&mut self, mass: &[f64], motion: &mut Motion, kick: f64) {
+    /// The impulse of the drag within a kick of `kick` [s] between the two fields [N s/m], none where there is none.
+    /// Only at the length of the opening: a body that turns, and the openings with it, is not dragged at.
+    pub(super) fn drag(&mut self, mass: &[f64], motion: &Motion, kick: f64) -> Option<Vector> {
         if self.drag <= 0.0 {
-            return;
+            return None;
         }
         let (a, b) = (self.first as usize, self.second as usize);
         let (mass_a, mass_b) = (mass[a], mass[b]);
@@ -232,15 +241,11 @@ impl Tie {
         let u = &motion.displacement;
         // What is apart by round-off only has no direction.
         let least = ROUND_OFF * (u[0][a].abs() + u[1][a].abs() + u[0][b].abs() + u[1][b].abs());
-        let Some(direction) = self.opening(u).try_normalize(least) else { return };
+        let direction = self.opening(u).try_normalize(least)?;
         let speed = direction.dot(&self.opening(&motion.velocity));
         let before = direction.dot(&self.opening(motion.before_kick()));
         // What an impulse takes out of the leapfrog is its work at the mean of the velocities before and after a kick.
         self.dragged += inertia * (1.0 - kept) * speed * 0.5 * (before + kept * speed);
-        for axis in 0..2 {
-            let change = direction[axis] * speed * (1.0 - kept) * reduced;
-            motion.velocity[axis][a] += change / mass_a;
-            motion.velocity[axis][b] -= change / mass_b;
-        }
+        Some(direction * (speed * (1.0 - kept) * reduced))
     }
 }

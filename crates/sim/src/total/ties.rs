@@ -173,11 +173,8 @@ impl Ties {
         let springs: Vec<(f64, f64, f64)> = ties
             .iter()
             .map(|tie| {
-                let now = tie.stretch(&motion.displacement);
-                let rate = tie.opening(&motion.velocity);
-                let before = now - rate * motion.last_step;
-                let held = now.dot(&before) + units.inertia_per_stiffness() * rate.norm_squared();
-                (tie.ahead_of(tip, direction, h), tie.stiffness / tie.scale, 0.5 * tie.scale * held)
+                let held = 0.5 * tie.scale * tie.held_per_stiffness(motion, units);
+                (tie.ahead_of(tip, direction, h), tie.stiffness / tie.scale, held)
             })
             .collect();
         Box::new(move |distance| {
@@ -186,6 +183,11 @@ impl Ties {
             };
             springs.iter().map(of).sum()
         })
+    }
+
+    /// What all ties hold of what the leapfrog keeps [J/m]: see [`Ties::release`].
+    pub(super) fn held(&self, motion: &Motion, units: TieUnits) -> f64 {
+        self.all().map(|tie| 0.5 * tie.stiffness * tie.held_per_stiffness(motion, units)).sum()
     }
 
     /// Works out how the inertia of ties couples the fields of a node.
@@ -227,11 +229,18 @@ impl Ties {
     /// Lets the drag of the ties around growing tips act within a kick of `kick` [s]. Around a crack at rest there is
     /// none: its body keeps its energy.
     pub(super) fn apply_drag(&mut self, mass: &[f64], motion: &mut Motion, cracks: &Cracks, kick: f64) {
-        for (&id, ties) in &mut self.of_tip {
-            if cracks.tip(id).is_none_or(|tip| tip.state != TipState::Growing) {
-                continue;
+        let is_growing = |id: TipId| cracks.tip(id).is_some_and(|tip| tip.state == TipState::Growing);
+        let growing = self.of_tip.iter_mut().filter(|(id, _)| is_growing(**id));
+        // All see the velocities without drag: where the ties of two tips share a field, neither comes before the
+        // other.
+        let of = |tie: &mut Tie| tie.drag(mass, motion, kick).map(|impulse| ([tie.first, tie.second], impulse));
+        let impulses: Vec<([u32; 2], Vector)> = growing.flat_map(|(_, ties)| ties).filter_map(of).collect();
+        for ([first, second], impulse) in impulses {
+            let (a, b) = (first as usize, second as usize);
+            for axis in 0..2 {
+                motion.velocity[axis][a] += impulse[axis] / mass[a];
+                motion.velocity[axis][b] -= impulse[axis] / mass[b];
             }
-            ties.iter_mut().for_each(|tie| tie.apply_drag(mass, motion, kick));
         }
     }
 }

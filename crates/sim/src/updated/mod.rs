@@ -308,9 +308,10 @@ impl Solver for Updated {
         Ok(())
     }
 
-    fn recut(&mut self, cracks: &Cracks, changed: &[TipId]) {
+    fn recut(&mut self, cracks: &Cracks, changed: &[TipId]) -> f64 {
         self.faces.follow(cracks, changed, &self.setup, &self.points);
         self.lattice.division = self.faces.division(&self.setup, cracks);
+        0.0
     }
 
     fn begin_run(&mut self) {}

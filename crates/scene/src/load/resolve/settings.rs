@@ -10,8 +10,9 @@ use crate::scene::Material;
 use crate::settings::*;
 use crate::validate::{Clock, validate_speed};
 
-/// Division of tips, unless the scene says otherwise. Two tips need twice the energy of one.
-const RELEASE_RATIO: f64 = 2.0;
+/// Division of tips, unless the scene says otherwise. Two tips that go on at a third of c_R need three times the energy
+/// of one at rest: 2/(1 − v/c_R).
+const RELEASE_RATIO: f64 = 3.0;
 /// [°], to either side.
 const HALF_ANGLE: f64 = 27.0;
 /// In cells: branches are apart by the domains that their tips are measured in.
