@@ -38,9 +38,9 @@ const CLOSED: [(f64, f64); 3] = [(12.0, -50.15), (13.2, -61.59), (14.4, -69.03)]
 /// Length of the path that is judged [m].
 const RUN: f64 = 0.025;
 
-/// The half plate and the tip of its notch [m], which as drawn lies off the grid by parts of a cell.
+/// The half plate and the tip of its notch [m].
 fn plate(cell_size: f64, toughness: f64) -> (Problem, Point) {
-    let tip = Point::new(0.05 + 0.125 * cell_size, STRIP + 0.01 * cell_size);
+    let tip = Point::new(0.05, STRIP);
     let driven = stretch((0.0, STRIP - cell_size), (0.0, 0.0));
     let mut problem = Problem::new(
         "impacted-notch",
