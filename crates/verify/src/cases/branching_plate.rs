@@ -49,7 +49,7 @@ fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationErr
     tally.run(&mut placed, |now, time| {
         let tip = &now.tips()[0];
         let grown = tip.length - x;
-        if grown > 0.0 && start.is_nan() {
+        if grown > 1e-6 * cell_size && start.is_nan() {
             start = 1e6 * now.time();
         }
         intensity.push((1e6 * time, tip.mode_1 / TOUGHNESS));
