@@ -127,7 +127,7 @@ fn moving_crack() {
 #[test]
 fn crack_motion() {
     let report = coarse("crack-motion", 20.0);
-    worked(&report, [120, 73, 34]);
+    worked(&report, [240, 152, 116]);
     met(&report, "start");
     within(&report, "Δa at 2.4 t_c", 0.1);
     met(&report, "highest speed");

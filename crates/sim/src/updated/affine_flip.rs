@@ -15,11 +15,12 @@ use crate::material::elastic::Elastic;
 
 /// Cells that the fastest wave runs while what the grid does not see fades to 1/e.
 ///
-/// Measured (`fissure verify transfers`, quadratic kernel, steps of .9 and of .3 of the stable one): a standing wave of
-/// 10 cells loses 6.0 and 12.6 % of its energy per period by APIC (k = 0), 2.5 and 1.7 % with 5 cells, 2.0 and 1.2 %
-/// with 10, 1.5 and .7 % with 50, 1.3 and .4 % with k = 1; a square that spins loses .04, .08, .38 and 3.1 % of its
-/// angular momentum in a quarter turn.
-const FADING: f64 = 10.0;
+/// Measured (`fissure verify transfers`, quadratic kernel): a standing wave of 10 cells loses 6.0 % of its energy per
+/// period by APIC (k = 0), 3.2 % with 2 cells, 2.0 % with 10, 1.3 % with k = 1; with steps of a third 12.6, 2.8, 1.2
+/// and .4 %. A square that spins loses .014 % of its angular momentum in a quarter turn with 2 cells, .08 % with 10,
+/// 3.1 % with k = 1. With 10 cells a plate with a crack that is brought to rest goes on trembling beside the tip at
+/// some places of it, where fields are light, and never rests; with 2 it does.
+const FADING: f64 = 2.0;
 
 /// k, what a particle keeps of its own velocity in a step of `time_step` [s] [–]: the same in a given time for any
 /// length of the steps.

@@ -60,7 +60,7 @@ fn updated(mut problem: Problem, transfer: Option<Transfer>) -> Problem {
 fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationError> {
     let shortest = options.cells_or(CASE.cells.1).round();
     for (name, transfer) in TRANSFERS {
-        for (waves, within) in [(1.0, 0.03), (2.0, 0.005), (4.0, 0.001)] {
+        for (waves, within) in [(1.0, 0.04), (2.0, 0.005), (4.0, 0.001)] {
             let cells = waves * shortest;
             tally.say(&format!("{name}, standing wave of {cells} cells"));
             let lost = standing(transfer, cells, tally)?;
@@ -155,7 +155,7 @@ fn spin(name: &str, transfer: Option<Transfer>, tally: &mut Tally<'_>) -> Result
     tally.run(&mut placed, |_, _| ControlFlow::Continue(()))?;
     let lost = 1.0 - placed.now().momenta().1 / before;
     let quantity = format!("angular momentum lost in a quarter turn, {name}");
-    tally.absolute(quantity, "", lost, 0.0, of_default(name, 2e-3));
+    tally.absolute(quantity, "", lost, 0.0, of_default(name, 1e-3));
     Ok(())
 }
 
