@@ -8,7 +8,7 @@ use fissure_sim::SimulationError;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// Resolution, in cells per characteristic length of the case (its documentation says which); none: that of its
-    /// targets, or [`Case::family_cells`] at several places.
+    /// targets, or those for several places (`--list` tells both).
     pub cells: Option<f64>,
     /// At how many places on the grid the case is computed. The first is as it is drawn.
     pub places: usize,
