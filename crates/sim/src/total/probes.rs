@@ -63,7 +63,10 @@ impl Probes {
         let are_faces = self.faces.len() == cracks.len() && self.faces.iter().zip(cracks.iter()).all(same_points);
         saved::ensure(are_faces, "the faces of a crack")?;
         let mut all = self.outlines.vertices().chain(self.faces.iter().flatten().flatten());
-        all.try_for_each(|probe| probe.check(fields))
+        all.try_for_each(|probe| {
+            saved::below("a point of a surface", [probe.body], scene.bodies.len())?;
+            probe.check(fields)
+        })
     }
 
     /// The faces of a crack whose last point at one end has moved along its last segment.
