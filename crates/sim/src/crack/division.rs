@@ -40,9 +40,9 @@ impl TipCut {
     /// to +1.7 %, standard deviation 0.9 %.
     pub(crate) const PLAIN: Self = Self { node_ahead: 0.3, behind: 0.0, shares: true };
 
-    /// As [`TipCut::PLAIN`] for a kernel. Quadratic and cubic kernels let the tip
-    /// act as if it lay farther ahead: K_I of an edge crack of 6 cells, a/W = 0.4, at six places of the tip in a cell
-    /// with the quadratic kernel: +3.5 to +4.9 % with the ramp around the tip, −1.3 to +1.3 % with it behind.
+    /// As [`TipCut::PLAIN`] for a kernel. Quadratic and cubic kernels let the tip act as if it lay farther ahead: K_I
+    /// of an edge crack of 6 cells, a/W = 0.4, with the quadratic kernel: +3.5 to +4.9 % with the ramp around the tip
+    /// (six places of it in a cell), −2.3 to +1.6 % with it behind (three).
     pub(crate) fn smooth(kernel: Kernel) -> Self {
         match kernel {
             Kernel::Bilinear | Kernel::Gimp => Self::PLAIN,
