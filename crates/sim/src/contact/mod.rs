@@ -9,6 +9,7 @@
 //! - [`meeting`]: the nearest edge of a vertex, the gap and the normal.
 //! - [`impulses`]: impulses of all meetings together, with Coulomb's friction.
 
+mod cells;
 pub(crate) mod impulses;
 pub(crate) mod meeting;
 pub(crate) mod neighbours;

@@ -1,5 +1,6 @@
 //! Which vertices of surfaces can come to which edges before the next look.
 
+use super::cells::{Calm, Cells};
 use super::surface::Surface;
 use fissure_plane::{Point, Vector, nearest_on_segment};
 
@@ -46,27 +47,30 @@ impl Neighbours {
         let rest = surface.places_at_rest();
         let search = Search { surface, place, rest: &rest, cell_size, cracks_touch };
         let cells = Cells::new(surface, place, REACH * cell_size);
+        let mut calm = Calm::new(&cells, surface, place);
         let normals: Vec<Option<Vector>> = (0..surface.len() as u32).map(|v| surface.normal(v, place)).collect();
         let edge_normals: Vec<Option<Vector>> =
             (0..surface.len() as u32).map(|edge| surface.edge_normal(edge, place)).collect();
         let mut found = Self { first: vec![0], ..Self::default() };
-        let mut near: Vec<u32> = Vec::new();
         for vertex in 0..surface.len() as u32 {
             let Some(normal) = normals[vertex as usize] else { continue };
-            near.clear();
-            let faces = |edge: &u32| edge_normals[*edge as usize].is_some_and(|n| n.dot(&normal) < MAY_FACE);
-            near.extend(
-                cells.around(place[vertex as usize]).filter(faces).filter(|&edge| search.is_near(vertex, edge)),
-            );
-            near.sort_unstable();
-            let before = found.edges.len();
-            found.edges.extend(near.iter().map(|&edge| Neighbour { edge, can_touch: search.can_touch(vertex, edge) }));
-            if found.edges[before..].iter().any(|n| n.can_touch) {
-                found.vertices.push(vertex);
-                found.first.push(found.edges.len() as u32);
-            } else {
-                found.edges.truncate(before);
+            if calm.is_calm(place[vertex as usize], search.least_slide()) {
+                continue;
             }
+            let faces = |edge: &u32| edge_normals[*edge as usize].is_some_and(|n| n.dot(&normal) < MAY_FACE);
+            let facing = || cells.around(place[vertex as usize]).filter(faces);
+            let touches = |edge: u32| {
+                !search.stays(vertex, edge) && search.is_near(vertex, edge) && search.can_touch(vertex, edge)
+            };
+            if !facing().any(touches) {
+                continue;
+            }
+            let before = found.edges.len();
+            let near = facing().filter(|&edge| search.is_near(vertex, edge));
+            found.edges.extend(near.map(|edge| Neighbour { edge, can_touch: search.can_touch(vertex, edge) }));
+            found.edges[before..].sort_unstable_by_key(|neighbour| neighbour.edge);
+            found.vertices.push(vertex);
+            found.first.push(found.edges.len() as u32);
         }
         found.ask(surface);
         found
@@ -122,6 +126,26 @@ impl Search<'_> {
         (nearest - x).norm_squared() <= (REACH * self.cell_size).powi(2)
     }
 
+    /// Whether a vertex and an edge of one body, one of them on a crack, have moved so much alike that they cannot be
+    /// near each other now if they do not belong together.
+    fn stays(&self, vertex: u32, edge: u32) -> bool {
+        let Some(next) = self.surface.next(edge) else { return true };
+        let [of_vertex, from, to] = [vertex, edge, next].map(|v| self.surface.vertex(v));
+        let slid = |end: u32| (self.displacement(end) - self.displacement(vertex)).norm_squared();
+        of_vertex.body == from.body
+            && (of_vertex.is_on_crack || from.is_on_crack || to.is_on_crack)
+            && slid(edge).max(slid(next)) < self.least_slide().powi(2)
+    }
+
+    /// What does not belong together and is near has moved by more than this relative to each other [m].
+    fn least_slide(&self) -> f64 {
+        (TOGETHER - REACH) * self.cell_size
+    }
+
+    fn displacement(&self, vertex: u32) -> Vector {
+        self.place[vertex as usize] - self.rest[vertex as usize]
+    }
+
     /// Whether a vertex and an edge are not of one piece where they are near each other.
     fn can_touch(&self, vertex: u32, edge: u32) -> bool {
         let Some(next) = self.surface.next(edge) else { return false };
@@ -163,40 +187,57 @@ impl Search<'_> {
     }
 }
 
-/// Edges by the cell their first vertex is in.
-struct Cells {
-    /// (row, column, edge), sorted.
-    edges: Vec<(i32, i32, u32)>,
-    size: f64,
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
 
-impl Cells {
-    /// Cells so large that all edges within `reach` [m] of a place begin in its cell or in one beside it.
-    fn new(surface: &Surface, place: &[Point], reach: f64) -> Self {
-        let edges = || (0..surface.len() as u32).filter_map(|edge| Some((edge, surface.next(edge)?)));
-        let length = |(edge, next): (u32, u32)| (place[next as usize] - place[edge as usize]).norm();
-        let size = reach + edges().map(length).fold(0.0, f64::max);
-        let mut cells = Self { edges: Vec::with_capacity(surface.len()), size };
-        cells.edges = edges()
-            .map(|(edge, _)| cells.key(place[edge as usize]))
-            .zip(edges())
-            .map(|((j, i), (edge, _))| (j, i, edge))
-            .collect();
-        cells.edges.sort_unstable();
-        cells
+    /// Two rings that bend and move, the second with a crack drawn into it, its first half on the crack.
+    fn moved(count: usize, slides: &[(f64, f64)], second_body: u32, turn: f64) -> (Surface, Vec<Point>) {
+        let mut surface = Surface::default();
+        for (ring, body) in [0, second_body].into_iter().enumerate() {
+            let first = surface.len() as u32;
+            for k in 0..count {
+                let angle = std::f64::consts::TAU * k as f64 / count as f64;
+                let rest = Point::new(angle.cos() + 2.2 * ring as f64, 1.5 * angle.sin());
+                surface.push(rest, body, 0, ring == 1 && k < count / 2);
+            }
+            (0..count as u32).for_each(|k| surface.link(first + k, first + (k + 1) % count as u32));
+        }
+        let of_ring = |v: usize| if v < count { Vector::zeros() } else { Vector::new(-turn, 0.3 * turn) };
+        let slide = |v: usize| slides[v * slides.len() / (2 * count)];
+        let moved = |(v, rest): (usize, Point)| rest + of_ring(v) + Vector::new(slide(v).0, slide(v).1);
+        let place = surface.places_at_rest().into_iter().enumerate().map(moved).collect();
+        (surface, place)
     }
 
-    fn key(&self, place: Point) -> (i32, i32) {
-        ((place.y / self.size).floor() as i32, (place.x / self.size).floor() as i32)
-    }
-
-    /// All edges within the reach of a place, and others.
-    fn around(&self, place: Point) -> impl Iterator<Item = u32> {
-        let (row, column) = self.key(place);
-        (row.saturating_sub(1)..=row.saturating_add(1)).flat_map(move |row| {
-            let (low, high) = ((row, column.saturating_sub(1)), (row, column.saturating_add(1)));
-            let first = self.edges.partition_point(|e| (e.0, e.1) < low);
-            self.edges[first..].iter().take_while(move |e| (e.0, e.1) <= high).map(|e| e.2)
-        })
+    proptest! {
+        /// Truth: every vertex with every edge.
+        #[test]
+        fn neighbours_are_those_of_all_pairs(
+            count in 8..60_usize,
+            slides in prop::collection::vec((-0.3..0.3_f64, -0.3..0.3_f64), 1..12),
+            second_body in 0..2_u32,
+            turn in 0.0..0.6_f64,
+            cell_size in 0.05..0.4_f64,
+        ) {
+            let (surface, place) = moved(count, &slides, second_body, turn);
+            let rest = surface.places_at_rest();
+            let search = Search { surface: &surface, place: &place, rest: &rest, cell_size, cracks_touch: true };
+            let mut expected = Vec::new();
+            for vertex in 0..surface.len() as u32 {
+                let Some(normal) = surface.normal(vertex, &place) else { continue };
+                let faces = |&edge: &u32| surface.edge_normal(edge, &place).is_some_and(|n| n.dot(&normal) < MAY_FACE);
+                let near = (0..surface.len() as u32).filter(faces).filter(|&edge| search.is_near(vertex, edge));
+                let near: Vec<Neighbour> =
+                    near.map(|edge| Neighbour { edge, can_touch: search.can_touch(vertex, edge) }).collect();
+                if near.iter().any(|neighbour| neighbour.can_touch) {
+                    expected.push((vertex, near));
+                }
+            }
+            let found = Neighbours::find(&surface, &place, cell_size, true);
+            let found: Vec<(u32, Vec<Neighbour>)> = found.iter().map(|(v, near)| (v, near.to_vec())).collect();
+            prop_assert_eq!(found, expected);
+        }
     }
 }

@@ -302,14 +302,14 @@ impl Solver for Total {
         let held = self.ties.held(&self.motion, units);
         let divides = changed.iter().any(|id| id.crack >= points_before.len());
         let lost = self.lattice.recut(cracks, &boxes, divides, &mut self.motion);
-        self.probes.refresh(&self.lattice, cracks, changed, &boxes);
+        let has_mouthed = self.probes.refresh(&self.lattice, cracks, changed, &boxes);
         let near = Near::new(&self.lattice, &boxes, cracks, changed, &points_before);
         self.loads.refresh(&near, &self.lattice);
         self.supports.refresh(&near, &self.scene, &self.lattice);
         self.colliders.refresh(&near, &self.lattice);
         self.contacts.refresh(&near, &self.lattice, cracks);
         self.ties.refresh(&near, &self.lattice, &self.motion, cracks);
-        self.touching.change();
+        self.touching.change(&near, has_mouthed);
         held - self.ties.held(&self.motion, units) + lost
     }
 

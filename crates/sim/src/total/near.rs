@@ -47,7 +47,12 @@ impl Near {
 
     /// The number that a segment of a crack has now.
     pub(super) fn segment_now(&self, crack: u32, before: u32) -> u32 {
-        before + self.shifts[crack as usize]
+        before + self.shift(crack as usize)
+    }
+
+    /// By how much the numbers of the points of a crack have moved up.
+    pub(super) fn shift(&self, crack: usize) -> u32 {
+        self.shifts[crack]
     }
 
     /// The boxes, widened by `margin` [m].

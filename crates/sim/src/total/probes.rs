@@ -81,8 +81,14 @@ impl Probes {
     }
 
     /// Lays the probes anew that may have changed: the faces of the cracks with a `changed` end, and all within
-    /// `boxes`.
-    pub(super) fn refresh(&mut self, lattice: &Lattice, cracks: &Cracks, changed: &[TipId], boxes: &[(Point, Point)]) {
+    /// `boxes`. Returns whether an outline has got a mouth.
+    pub(super) fn refresh(
+        &mut self,
+        lattice: &Lattice,
+        cracks: &Cracks,
+        changed: &[TipId],
+        boxes: &[(Point, Point)],
+    ) -> bool {
         // Faces: a changed crack anew (points have been added), the others where they lie in a box.
         let within = |p: Point| boxes.iter().any(|(low, high)| p >= *low && p <= *high);
         for (index, crack) in cracks.iter().enumerate() {
@@ -95,15 +101,18 @@ impl Probes {
         for probe in self.outlines.vertices_mut().filter(|probe| within(probe.rest)) {
             probe.entries = lattice.probe_entries(probe.body, probe.rest, probe.nudged);
         }
+        let mut has_mouthed = false;
         for &id in changed {
             if cracks.end(id) == CrackEnd::Mouth {
                 let point = cracks.position(id);
                 let there = |p: &Probe| (p.rest - point).norm() < 1e-12 * lattice.grid.cell_size && p.nudged != p.rest;
                 if !self.outlines.vertices().any(there) {
                     self.open_mouth(lattice, cracks, id);
+                    has_mouthed = true;
                 }
             }
         }
+        has_mouthed
     }
 
     /// Doubles the outline where a crack mouths at it: the two new vertices are the end points of the faces.

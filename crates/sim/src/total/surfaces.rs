@@ -1,5 +1,6 @@
 //! The surfaces that can touch: outlines and crack faces joined into chains, and the probe that carries each vertex.
 
+use super::near::Near;
 use super::probe::Probe;
 use super::probes::Probes;
 use crate::contact::surface::Surface;
@@ -53,6 +54,17 @@ impl Surfaces {
             all.join_at_junction(scene, cracks, id);
         }
         all
+    }
+
+    /// Gives the points of faces the numbers that they have now.
+    pub(super) fn renumber(&mut self, near: &Near) {
+        for (crack, faces) in self.faces.iter().enumerate().filter(|&(crack, _)| near.shift(crack) > 0) {
+            for &vertex in faces.iter().flatten() {
+                if let Carrier::Face { point, .. } = &mut self.carriers[vertex as usize] {
+                    *point += near.shift(crack);
+                }
+            }
+        }
     }
 
     /// The probe that carries a vertex.

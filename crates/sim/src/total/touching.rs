@@ -2,6 +2,7 @@
 
 use super::lattice::Lattice;
 use super::motion::Motion;
+use super::near::Near;
 use super::probes::Probes;
 use super::supports::HeldFields;
 use super::surfaces::{Surfaces, VertexKey, can_meet};
@@ -32,8 +33,10 @@ pub(super) struct Touching {
     surfaces: Option<Surfaces>,
     cracks_touch: bool,
     cell_size: f64,
-    /// Whether the surfaces have changed since they were laid.
+    /// Whether the surfaces have changed since they were laid: at their ends ...
     is_stale: bool,
+    /// ... or elsewhere, so that what was found on them counts no more.
+    is_void: bool,
     neighbours: Neighbours,
     /// Where vertices that were asked for are [m].
     place: Vec<Point>,
@@ -102,6 +105,7 @@ impl Touching {
             cracks_touch: scene.solver.crack_contact,
             cell_size: scene.cell_size,
             is_stale: true,
+            is_void: true,
             neighbours: Neighbours::default(),
             place: Vec::new(),
             moved: f64::INFINITY,
@@ -121,45 +125,64 @@ impl Touching {
         !self.last.impulses.is_empty()
     }
 
-    /// The surfaces have got other vertices.
-    pub(super) fn change(&mut self) {
+    /// Cracks have grown. What they add to the surfaces lies at their tips, where nothing can touch it before the next
+    /// look; a new mouth (`has_mouthed`) changes an outline.
+    pub(super) fn change(&mut self, near: &Near, has_mouthed: bool) {
         self.is_stale = true;
+        self.is_void |= has_mouthed;
+        if let Some(surfaces) = &mut self.surfaces {
+            surfaces.renumber(near);
+        }
     }
 
-    /// What was found so far counts no more.
+    /// What was found so far counts no more, so that a run goes on from here as one that is restored does.
     pub(super) fn look_again(&mut self) {
+        self.is_stale = true;
         self.moved = f64::INFINITY;
     }
 
     /// Looks for what may touch, where surfaces may have moved enough.
     pub(super) fn look(&mut self, moment: &Moment<'_>, motion: &Motion) {
-        let Some(surfaces) = &mut self.surfaces else { return };
+        if self.is_void {
+            self.lay_surfaces(moment);
+        }
+        let Some(surfaces) = &self.surfaces else { return };
         self.steps_since_look += 1;
-        let is_due = self.steps_since_look >= STEPS_BETWEEN_LOOKS || self.moved == f64::INFINITY;
-        if !is_due && (!self.is_stale || self.neighbours.is_empty()) {
+        if self.steps_since_look < STEPS_BETWEEN_LOOKS && self.moved < f64::INFINITY {
             return;
         }
-        let Moment { scene, probes, cracks, time_step, .. } = *moment;
-        if self.is_stale {
-            *surfaces = Surfaces::new(scene, probes, cracks);
-            self.last.impulses = renumbered(&self.last.impulses, surfaces);
-            if !self.neighbours.is_empty() {
-                self.moved = f64::INFINITY;
-            }
-            self.is_stale = false;
-        }
-        let vertices = 0..surfaces.surface.len() as u32;
         // Twice: until the next look they go on as far.
-        let speed = relative_speed(vertices.clone().map(|v| surfaces.probe(v, probes).value(&motion.velocity)));
-        let way = speed * time_step * f64::from(STEPS_BETWEEN_LOOKS);
+        let all = 0..surfaces.surface.len() as u32;
+        let speed = relative_speed(all.map(|v| surfaces.probe(v, moment.probes).value(&motion.velocity)));
+        let way = speed * moment.time_step * f64::from(STEPS_BETWEEN_LOOKS);
         self.moved += way;
         self.steps_since_look = 0;
-        if self.moved + way < MOST_MOVED * self.cell_size {
-            return;
+        if self.moved + way >= MOST_MOVED * self.cell_size {
+            self.find_neighbours(moment, motion);
         }
-        self.place = vertices.map(|v| surfaces.probe(v, probes).moved(&motion.displacement)).collect();
+    }
+
+    /// Finds what may touch before the next look.
+    fn find_neighbours(&mut self, moment: &Moment<'_>, motion: &Motion) {
+        if self.is_stale {
+            self.lay_surfaces(moment);
+        }
+        let Some(surfaces) = &self.surfaces else { return };
+        let place = |v: u32| surfaces.probe(v, moment.probes).moved(&motion.displacement);
+        self.place = (0..surfaces.surface.len() as u32).map(place).collect();
         self.neighbours = Neighbours::find(&surfaces.surface, &self.place, self.cell_size, self.cracks_touch);
         self.moved = 0.0;
+    }
+
+    /// Lays the surfaces as they are now.
+    fn lay_surfaces(&mut self, moment: &Moment<'_>) {
+        let Some(surfaces) = &mut self.surfaces else { return };
+        *surfaces = Surfaces::new(moment.scene, moment.probes, moment.cracks);
+        self.last.impulses = renumbered(&self.last.impulses, surfaces);
+        if !self.neighbours.is_empty() {
+            self.moved = f64::INFINITY;
+        }
+        (self.is_stale, self.is_void) = (false, false);
     }
 
     /// Whether anything is near enough to touch.
