@@ -1,7 +1,7 @@
 //! All cracks of a run, and how a tip among them is named.
 
 use super::tip::Tip;
-use super::{Crack, slot};
+use super::{Crack, KINK, SHORTEST_BRANCH, chord_start, slot};
 use crate::crack::division::CrackLine;
 use crate::saved::{self, Fits};
 use fissure_scene::{CrackEnd, End, Point, Scene, Vector};
@@ -32,6 +32,36 @@ impl TipId {
     /// [`SimulationError::BadState`](crate::SimulationError::BadState)
     pub(crate) fn check(self, cracks: usize) -> Fits {
         saved::ensure(self.crack < cracks, "the crack of a tip")
+    }
+}
+
+/// Turns whose cosines differ by less are equal.
+const EQUAL_TURNS: f64 = 1e-9;
+
+/// A stretch of a crack, walked from one of its points to another one, in either direction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Stretch {
+    /// Number of the crack.
+    pub(crate) crack: usize,
+    from: usize,
+    to: usize,
+}
+
+impl Stretch {
+    /// Numbers of its points, as it is walked.
+    fn points(self) -> impl Iterator<Item = usize> {
+        let (low, high) = (self.from.min(self.to), self.from.max(self.to));
+        (low..=high).map(move |k| if self.from <= self.to { k } else { low + high - k })
+    }
+
+    /// Whether the segment from the point number `k` of the crack to the next one is part of it.
+    pub(crate) fn has_segment(self, k: usize) -> bool {
+        (self.from.min(self.to)..self.from.max(self.to)).contains(&k)
+    }
+
+    /// Whether it is walked against the direction of the crack, which then runs towards where the walk begins.
+    pub(crate) fn is_backwards(self) -> bool {
+        self.from > self.to
     }
 }
 
@@ -94,14 +124,105 @@ impl Cracks {
         self.of(id).tip_position(id.end)
     }
 
-    /// Unit vector ahead of the end at rest: see [`Crack::ahead`].
-    pub(crate) fn ahead(&self, id: TipId, over: f64) -> Vector {
-        self.of(id).ahead(id.end, over)
+    /// What leads to an end, from it on: along its crack to the other end and, where that leaves another crack, along
+    /// that one on the side to which it turns less. Two branches of a crack are so followed alike, whichever of them
+    /// has the number of the crack.
+    pub(crate) fn trail(&self, id: TipId) -> Vec<Stretch> {
+        let last = self.of(id).points.len() - 1;
+        let (from, to) = if id.end == End::Start { (0, last) } else { (last, 0) };
+        let mut trail = vec![Stretch { crack: id.crack, from, to }];
+        // Cracks that leave each other in a circle are followed once.
+        while trail.len() <= self.len() {
+            let Stretch { crack, to, .. } = trail[trail.len() - 1];
+            let Some(fork) = self.fork(crack, if to == 0 { End::Start } else { End::End }) else { break };
+            trail.push(fork);
+        }
+        trail
+    }
+
+    /// The way on behind an end of a crack that leaves another one there, on the side to which it turns less; none
+    /// where it leaves none at a point of it, or turns by the same to both sides.
+    fn fork(&self, crack: usize, end: End) -> Option<Stretch> {
+        let (own, trunk) = (&self.0[crack], self.trunk(crack, end)?);
+        let points = &self.0[trunk].points;
+        let place = own.tip_position(end);
+        let at = points.iter().position(|p| *p == place)?;
+        if at == 0 || at + 1 == points.len() {
+            return None;
+        }
+        let away = -own.last_direction(end);
+        let along = |from: usize| (place - points[from]).normalize().dot(&away);
+        let (before, after) = (along(at - 1), along(at + 1));
+        if (before - after).abs() < EQUAL_TURNS {
+            return None;
+        }
+        Some(Stretch { crack: trunk, from: at, to: if before > after { 0 } else { points.len() - 1 } })
+    }
+
+    /// Where cracks begin at a point of another one: the place at rest [m], and the way on along the other one, on the
+    /// side to which they turn less.
+    pub(crate) fn forks(&self) -> Vec<(Point, Stretch)> {
+        let of = |crack: usize| self.fork(crack, End::Start).map(|trunk| (self.0[crack].points[0], trunk));
+        (0..self.len()).filter_map(of).collect()
+    }
+
+    /// The crack that an end is on.
+    fn trunk(&self, crack: usize, end: End) -> Option<usize> {
+        let CrackEnd::Junction { crack: trunk } = self.0[crack].end(end) else { return None };
+        (trunk as usize != crack).then_some(trunk as usize).filter(|&trunk| trunk < self.len())
+    }
+
+    /// Points behind the end at rest, from it on, up to the first one `over` [m] behind it.
+    pub(crate) fn behind(&self, id: TipId, over: f64) -> Vec<Point> {
+        self.behind_at(id, over, |crack, point| self.0[crack].points[point])
+    }
+
+    /// As [`Cracks::behind`], the points of the cracks being where `place` (crack, number of the point) says.
+    pub(crate) fn behind_at(&self, id: TipId, over: f64, place: impl Fn(usize, usize) -> Point) -> Vec<Point> {
+        let trail = self.trail(id);
+        let mut points = vec![place(id.crack, trail[0].from)];
+        let mut way = 0.0;
+        for stretch in trail {
+            for k in stretch.points().skip(1) {
+                if way >= over {
+                    return points;
+                }
+                let point = place(stretch.crack, k);
+                way += (point - points[points.len() - 1]).norm();
+                points.push(point);
+            }
+        }
+        points
     }
 
     /// Way from the end to the first kink behind it [m], if that is less than `within` [m].
     pub(crate) fn way_to_kink(&self, id: TipId, within: f64) -> Option<f64> {
-        self.of(id).way_to_kink(id.end, within)
+        let mut way = 0.0;
+        for w in self.behind(id, within).windows(3) {
+            let (last, before) = (w[0] - w[1], w[1] - w[2]);
+            way += last.norm();
+            if way >= within {
+                break;
+            }
+            if before.perp(&last).atan2(before.dot(&last)).abs() > KINK {
+                return Some(way);
+            }
+        }
+        None
+    }
+
+    /// Length of the chord that gives the direction of the crack at an end: `over` [m], or the way to the last kink
+    /// where that is shorter.
+    pub(crate) fn chord_length(&self, id: TipId, over: f64) -> f64 {
+        self.way_to_kink(id, over).filter(|&way| way > SHORTEST_BRANCH * over).unwrap_or(over)
+    }
+
+    /// Unit vector along the crack at rest, pointing ahead of the end: along the chord from the place `over` [m] behind
+    /// the tip (or the other end), or from the last kink. A branch shorter than a quarter cell, of a chord of two, has
+    /// the direction of the crack that it comes from, but for as far as it has come.
+    pub(crate) fn ahead(&self, id: TipId, over: f64) -> Vector {
+        let chord = self.chord_length(id, over);
+        (self.position(id) - chord_start(&self.behind(id, chord), End::Start, chord)).normalize()
     }
 
     /// Unit vector of the last segment at rest, pointing ahead of the end.
@@ -116,29 +237,27 @@ impl Cracks {
         let beyond = 2.0 * reach;
         let of = |(i, crack): (usize, &Crack)| {
             let mut line = crack.line(i, points(i, crack), beyond);
-            line.trunk = self.way_along_trunk(crack, &points, 5.0 * reach);
+            line.trunk = self.way_along_trunk(i, &points, 5.0 * reach);
             line
         };
         self.iter().enumerate().map(of).collect()
     }
 
-    /// The way along the crack that a crack leaves at a point of that one to there, over `length` [m], that point left
-    /// out; empty where it leaves none so.
-    fn way_along_trunk(&self, crack: &Crack, points: &impl Fn(usize, &Crack) -> Vec<Point>, length: f64) -> Vec<Point> {
-        let CrackEnd::Junction { crack: number } = crack.end(End::Start) else { return Vec::new() };
-        let Some(trunk) = self.get(number as usize) else { return Vec::new() };
-        let Some(at) = trunk.points.iter().position(|p| *p == crack.points[0]) else { return Vec::new() };
-        if at == 0 || at + 1 == trunk.points.len() {
-            return Vec::new();
+    /// The way to the start of a crack along the one that it leaves there, over `length` [m], the start left out; empty
+    /// where it leaves none at a point of it.
+    fn way_along_trunk(&self, crack: usize, points: &impl Fn(usize, &Crack) -> Vec<Point>, length: f64) -> Vec<Point> {
+        let Some(trunk) = self.fork(crack, End::Start) else { return Vec::new() };
+        let of_trunk = points(trunk.crack, &self.0[trunk.crack]);
+        let (mut left, mut last) = (length, of_trunk[trunk.from]);
+        let mut way: Vec<Point> = Vec::new();
+        for k in trunk.points().skip(1) {
+            if left <= 0.0 {
+                break;
+            }
+            left -= (of_trunk[k] - last).norm();
+            last = of_trunk[k];
+            way.push(last);
         }
-        let of_trunk = points(number as usize, trunk);
-        let mut left = length;
-        let is_within = |k: &usize| {
-            let is_within = left > 0.0;
-            left -= (of_trunk[*k + 1] - of_trunk[*k]).norm();
-            is_within
-        };
-        let mut way: Vec<Point> = (0..at).rev().take_while(is_within).map(|k| of_trunk[k]).collect();
         way.reverse();
         way
     }

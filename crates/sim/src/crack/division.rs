@@ -209,6 +209,12 @@ impl Division {
         (self.reach + 1.0) * self.cell_size
     }
 
+    /// Within so far of a place where a crack leaves another one, along each axis [m], the two sides of the other one
+    /// differ by both.
+    pub(crate) fn around_fork(&self) -> f64 {
+        around_fork(self.reach, self.cell_size)
+    }
+
     /// Segments of a crack around `point`, rising: all within [`Division::surroundings`], some beside, and always the
     /// first and the last one, whose ends may have moved on since the division was made.
     pub(crate) fn segments_around(&self, crack: u32, point: Point) -> Vec<usize> {
@@ -376,7 +382,20 @@ fn prepare(line: &CrackLine, tip_division: TipDivision, cut: TipCut, cell_size: 
         }
     }
     let has_junction = kinds.iter().any(|k| matches!(k, SegmentKind::BeyondJunction(_)));
-    Line { crack: line.crack, segments, tips, cut, kinds, of, has_junction, around_start: 2.0 * reach * cell_size }
+    Line {
+        crack: line.crack,
+        segments,
+        tips,
+        cut,
+        kinds,
+        of,
+        has_junction,
+        around_start: around_fork(reach, cell_size),
+    }
+}
+
+fn around_fork(reach: f64, cell_size: f64) -> f64 {
+    2.0 * reach * cell_size
 }
 
 /// The crack across which two fields face each other, and the side of the first; none when they differ by more than one

@@ -203,52 +203,6 @@ impl Crack {
         }
     }
 
-    /// Points from an end backwards, up to the first one `over` [m] behind it.
-    pub(crate) fn behind(&self, end: End, over: f64) -> Vec<Point> {
-        let n = self.points.len();
-        let at = |k: usize| self.points[if end == End::Start { k } else { n - 1 - k }];
-        let mut way = 0.0;
-        let mut points = vec![at(0)];
-        for k in 1..n {
-            if way >= over {
-                break;
-            }
-            points.push(at(k));
-            way += (at(k) - at(k - 1)).norm();
-        }
-        points
-    }
-
-    /// Way from an end to the first kink behind it [m], if that is less than `within` [m].
-    pub(crate) fn way_to_kink(&self, end: End, within: f64) -> Option<f64> {
-        let mut way = 0.0;
-        for w in self.behind(end, within).windows(3) {
-            let (last, before) = (w[0] - w[1], w[1] - w[2]);
-            way += last.norm();
-            if way >= within {
-                break;
-            }
-            if before.perp(&last).atan2(before.dot(&last)).abs() > KINK {
-                return Some(way);
-            }
-        }
-        None
-    }
-
-    /// Length of the chord that gives the direction of the crack at an end: `over` [m], or the way to the last kink
-    /// where that is shorter.
-    pub(crate) fn chord_length(&self, end: End, over: f64) -> f64 {
-        self.way_to_kink(end, over).filter(|&way| way > SHORTEST_BRANCH * over).unwrap_or(over)
-    }
-
-    /// Unit vector along the crack at rest, pointing ahead of the end: along the chord from the place `over` [m] behind
-    /// the tip (or the other end), or from the last kink. A branch shorter than a quarter cell, of a chord of two, has
-    /// the direction of the crack that it comes from, but for as far as it has come.
-    pub(crate) fn ahead(&self, end: End, over: f64) -> Vector {
-        let tip = self.tip_position(end);
-        (tip - chord_start(&self.points, end, self.chord_length(end, over))).normalize()
-    }
-
     /// Unit vector of the last segment at rest, pointing ahead of the end.
     pub(crate) fn last_direction(&self, end: End) -> Vector {
         let n = self.points.len();

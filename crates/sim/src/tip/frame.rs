@@ -6,9 +6,6 @@ use crate::crack::{DIRECTION_LENGTH, chord_start};
 use fissure_plane::{Matrix, Point, Vector};
 use fissure_scene::End;
 
-/// Segments behind a tip that are looked at for the side of a place; more than any integral reaches.
-const SEGMENTS_BEHIND: usize = 40;
-
 /// A turn by the angle whose tangent is `sine`/`cosine`, and what it differs from the identity, without cancellation.
 pub(crate) fn turn(cosine: f64, sine: f64) -> (Matrix, Matrix) {
     let r = cosine.hypot(sine);
@@ -26,11 +23,26 @@ pub(crate) fn turned(vector: Vector, angle: f64) -> Vector {
 /// One end of a crack of which the points are at `points` now, and the direction ahead of it (unit vector); that at
 /// rest where they all coincide.
 pub(crate) fn tip_of(cracks: &Cracks, id: TipId, points: &[Point], cell_size: f64) -> (Point, Vector) {
-    let over = cracks.of(id).chord_length(id.end, DIRECTION_LENGTH * cell_size);
+    let over = cracks.chord_length(id, DIRECTION_LENGTH * cell_size);
     let tip = if id.end == End::Start { points[0] } else { points[points.len() - 1] };
     let ahead = tip - chord_start(points, id.end, over);
     let length = ahead.norm();
     (tip, if length > 0.0 { ahead / length } else { cracks.ahead(id, DIRECTION_LENGTH * cell_size) })
+}
+
+/// The points around a tip that [`side_of`] asks for, of places within `radius` [m] of it: what is nearest to such a
+/// place lies within twice that. They run as the crack does; `place` (crack, number of the point) says where they are.
+pub(crate) fn line_around(
+    cracks: &Cracks,
+    id: TipId,
+    radius: f64,
+    place: impl Fn(usize, usize) -> Point,
+) -> Vec<Point> {
+    let mut points = cracks.behind_at(id, 2.0 * radius, place);
+    if id.end == End::End {
+        points.reverse();
+    }
+    points
 }
 
 /// The face of the crack through `points` that a place sees, as a side of the frame of one of its tips (`ahead`: e1):
@@ -44,7 +56,7 @@ pub(crate) fn side_of(points: &[Point], end: End, ahead: Vector, place: Point) -
         return if ahead.perp(&arm) >= 0.0 { Side::Above } else { Side::Below };
     }
     let mut nearest = (f64::INFINITY, 0);
-    for k in 0..(n - 1).min(SEGMENTS_BEHIND) {
+    for k in 0..n - 1 {
         let segment = if end == End::End { n - 2 - k } else { k };
         let distance = fissure_plane::distance_to_segment(place, points[segment], points[segment + 1]);
         if distance < nearest.0 {

@@ -11,7 +11,7 @@ use crate::tip::contour::{Contour, ContourHalf, ContourSample};
 use crate::tip::domain::domain_integrals;
 use crate::tip::reciprocal::{Setting, reciprocal_integrals};
 use crate::tip::zone::{QuadraturePoint, TipZone};
-use fissure_scene::{End, JMethod, Matrix, ModeSplit, Point, Scene, Vector};
+use fissure_scene::{JMethod, Matrix, ModeSplit, Point, Scene, Vector};
 use std::convert::Infallible;
 
 /// The radius is not made smaller than this, in cells: within it lie too few particles for an integral.
@@ -135,8 +135,8 @@ impl Gauge<'_> {
         (radius, is_shrunk, None)
     }
 
-    /// Distance from a tip to the nearest thing that would spoil the integral: a ring, another crack, the other end of
-    /// this one, a bend where `bends` count [m].
+    /// Distance from a tip to the nearest thing that would spoil the integral: a ring, a crack that does not lead to
+    /// it, the other end of those that do, a bend of theirs where `bends` count [m].
     fn free_radius(&self, cracks: &Cracks, id: TipId, bends: bool) -> f64 {
         let line = cracks.of(id);
         let tip = cracks.position(id);
@@ -146,17 +146,15 @@ impl Gauge<'_> {
             // The integrals hold for one material; across an interface they would count its image forces.
             free = free.min(inclusion.region.distance_to_rings(tip));
         }
-        for (index, other) in cracks.iter().enumerate() {
-            if index != id.crack && other.body == line.body {
-                for w in other.points.windows(2) {
+        let trail = cracks.trail(id);
+        for (index, other) in cracks.iter().enumerate().filter(|(_, other)| other.body == line.body) {
+            for (k, w) in other.points.windows(2).enumerate() {
+                if !trail.iter().any(|stretch| stretch.crack == index && stretch.has_segment(k)) {
                     free = free.min(fissure_plane::distance_to_segment(tip, w[0], w[1]));
                 }
             }
         }
-        let points: Vec<Point> = match id.end {
-            End::Start => line.points.clone(),
-            End::End => line.points.iter().rev().copied().collect(),
-        };
+        let points = cracks.behind(id, f64::INFINITY);
         let ahead = cracks.ahead(id, crate::crack::DIRECTION_LENGTH * self.scene.cell_size);
         for w in points.windows(3) {
             let (a, b) = (w[1] - w[0], w[2] - w[1]);

@@ -15,14 +15,19 @@ use super::probes::Probes;
 use crate::contact::neighbours::TOGETHER;
 use crate::crack::Crack;
 use crate::crack::contact::face_impulse;
-use crate::crack::cracks::Cracks;
+use crate::crack::cracks::{Cracks, Stretch};
 use fissure_plane::{Point, Vector};
+
+/// Rounds in which the pairs of a node that has several take what the others have done into account.
+const ROUNDS: usize = 8;
 
 /// Two fields of one node on the two sides of one crack.
 #[derive(Debug, Clone, Copy)]
 struct FacePair {
     above: u32,
     below: u32,
+    /// Their node.
+    node: u32,
     crack: u32,
     /// Segment of the crack nearest to the node.
     segment: u32,
@@ -43,9 +48,10 @@ pub(super) struct Contacts {
 impl Contacts {
     /// The pairs of `lattice`. `friction`: coefficient of friction; none where faces pass through each other.
     pub(super) fn new(friction: Option<f64>, lattice: &Lattice, cracks: &Cracks) -> Self {
+        let forks = cracks.forks();
         let mut pairs = Vec::new();
         for node in lattice.fields().divided_nodes() {
-            add_pairs_of_node(lattice, node, cracks, &mut pairs);
+            add_pairs_of_node(lattice, node, cracks, &forks, &mut pairs);
         }
         Self { pairs, friction, longest_slide: TOGETHER * lattice.grid.cell_size }
     }
@@ -57,7 +63,8 @@ impl Contacts {
 
     /// The same after a change: nodes elsewhere have the pairs they had.
     pub(super) fn refresh(&mut self, near: &Near, lattice: &Lattice, cracks: &Cracks) {
-        let node_of = |pair: &FacePair| lattice.fields().node(pair.above as usize);
+        let node_of = |pair: &FacePair| pair.node as usize;
+        let forks = cracks.forks();
         let mut pairs = Vec::with_capacity(self.pairs.len() + 32);
         let mut before = self.pairs.as_slice();
         for node in lattice.fields().divided_nodes() {
@@ -66,7 +73,7 @@ impl Contacts {
             before = rest;
             if near.contains(lattice.grid.position(node)) {
                 let first = pairs.len();
-                add_pairs_of_node(lattice, node, cracks, &mut pairs);
+                add_pairs_of_node(lattice, node, cracks, &forks, &mut pairs);
                 // What the faces did to each other in this step they did, however the node is divided now: tips may be
                 // measured again before the next.
                 for before in own {
@@ -99,32 +106,55 @@ impl Contacts {
     /// Applies contact to all pairs: impulses within the time `kick` [s].
     pub(super) fn resolve(&mut self, mass: &[f64], probes: &Probes, motion: &mut Motion, kick: f64, time_step: f64) {
         let Some(friction) = self.friction else { return };
-        for pair in &mut self.pairs {
-            let (a, b) = (pair.above as usize, pair.below as usize);
-            let gap = pair.gap(motion);
-            let speed = motion.velocity(a) - motion.velocity(b);
-            if gap == Vector::zeros() && speed == Vector::zeros() {
-                continue;
+        let longest_slide = self.longest_slide;
+        let mut meeting: Vec<(usize, Vector, f64)> = Vec::new();
+        for pairs in self.pairs.chunk_by_mut(|p, q| p.node == q.node) {
+            meeting.clear();
+            for (k, pair) in pairs.iter().enumerate() {
+                let gap = pair.gap(motion);
+                if gap == Vector::zeros() && pair.speed(motion) == Vector::zeros() {
+                    continue;
+                }
+                let Some(n) = probes.segment_normal(pair.crack, pair.segment, motion) else { continue };
+                // Faces that have slid apart touch others than they faced at rest.
+                if (gap - n * gap.dot(&n)).norm() > longest_slide {
+                    continue;
+                }
+                // What is left of the gap may be used up in this step; faces that overlap stay as they are.
+                meeting.push((k, n, -gap.dot(&n).max(0.0) / time_step));
             }
-            let Some(n) = probes.segment_normal(pair.crack, pair.segment, motion) else { continue };
-            // Faces that have slid apart touch others than they faced at rest.
-            if (gap - n * gap.dot(&n)).norm() > self.longest_slide {
-                continue;
-            }
-            // What is left of the gap may be used up in this step; faces that overlap stay as they are.
-            let allowed = -gap.dot(&n).max(0.0) / time_step;
-            let Some(impulse) = face_impulse(speed, n, allowed, [mass[a], mass[b]], friction) else { continue };
-            for axis in 0..2 {
-                pair.force[axis] += impulse[axis] / kick;
-                motion.velocity[axis][a] += impulse[axis] / mass[a];
-                motion.velocity[axis][b] -= impulse[axis] / mass[b];
+            let rounds = if meeting.len() > 1 { ROUNDS } else { 1 };
+            for _ in 0..rounds {
+                // All see the same velocities, and each has its part of the mass of a field that it shares: none comes
+                // before another, and together they do no more than they may.
+                let part = |field: u32| {
+                    let sharing = meeting.iter().filter(|m| pairs[m.0].above == field || pairs[m.0].below == field);
+                    mass[field as usize] / sharing.count() as f64
+                };
+                let impulse_of = |&(k, n, allowed): &(usize, Vector, f64)| {
+                    let pair = &pairs[k];
+                    let masses = [part(pair.above), part(pair.below)];
+                    Some((k, face_impulse(pair.speed(motion), n, allowed, masses, friction)?))
+                };
+                let impulses: Vec<(usize, Vector)> = meeting.iter().filter_map(impulse_of).collect();
+                for (k, impulse) in impulses {
+                    let pair = &mut pairs[k];
+                    let (a, b) = (pair.above as usize, pair.below as usize);
+                    for axis in 0..2 {
+                        pair.force[axis] += impulse[axis] / kick;
+                        motion.velocity[axis][a] += impulse[axis] / mass[a];
+                        motion.velocity[axis][b] -= impulse[axis] / mass[b];
+                    }
+                }
             }
         }
     }
 
-    /// The forces of the last step between the faces of a crack: place at rest [m] and force on the face above [N/m].
-    pub(super) fn forces(&self, crack: usize, lattice: &Lattice) -> impl Iterator<Item = (Point, Vector)> {
-        let pressed = self.pairs.iter().filter(move |p| p.crack as usize == crack && p.force != [0.0; 2]);
+    /// The forces of the last step between the faces of a crack along a stretch of it: place at rest [m] and force on
+    /// the face above [N/m].
+    pub(super) fn forces(&self, stretch: Stretch, lattice: &Lattice) -> impl Iterator<Item = (Point, Vector)> {
+        let is_on = move |p: &FacePair| p.crack as usize == stretch.crack && stretch.has_segment(p.segment as usize);
+        let pressed = self.pairs.iter().filter(move |p| is_on(p) && p.force != [0.0; 2]);
         pressed.map(|p| (lattice.position(p.above as usize), Vector::from(p.force)))
     }
 }
@@ -134,28 +164,53 @@ impl FacePair {
     fn gap(&self, motion: &Motion) -> Vector {
         motion.displacement(self.above as usize) - motion.displacement(self.below as usize)
     }
-}
 
-fn add_pairs_of_node(lattice: &Lattice, node: usize, cracks: &Cracks, pairs: &mut Vec<FacePair>) {
-    for facing in lattice.fields().facing_pairs(&lattice.fields_with_mass(node)) {
-        let Some(line) = cracks.get(facing.crack as usize) else { continue };
-        let [above, below] = facing.above_and_below();
-        let segment = nearest_segment(lattice, facing.crack, line, lattice.grid.position(node));
-        pairs.push(FacePair { above, below, crack: facing.crack, segment: segment as u32, force: [0.0; 2] });
+    /// Velocity of the face above less that of the face below [m/s].
+    fn speed(&self, motion: &Motion) -> Vector {
+        motion.velocity(self.above as usize) - motion.velocity(self.below as usize)
     }
 }
 
-/// The segment of a crack nearest to `place`.
-fn nearest_segment(lattice: &Lattice, crack: u32, line: &Crack, place: Point) -> usize {
+fn add_pairs_of_node(
+    lattice: &Lattice,
+    node: usize,
+    cracks: &Cracks,
+    forks: &[(Point, Stretch)],
+    pairs: &mut Vec<FacePair>,
+) {
+    let place = lattice.grid.position(node);
+    for facing in lattice.fields().facing_pairs(&lattice.fields_with_mass(node)) {
+        let Some(line) = cracks.get(facing.crack as usize) else { continue };
+        let [above, below] = facing.above_and_below();
+        // Around a fork the two sides of the trunk differ by both its branches: what differs by one faces across that.
+        let is_of_trunk = |segment: &usize| {
+            let is_near = |at: Point| (place - at).amax() <= lattice.division.around_fork();
+            forks
+                .iter()
+                .any(|(at, trunk)| trunk.crack == facing.crack as usize && trunk.has_segment(*segment) && is_near(*at))
+        };
+        let segment = nearest_segment(lattice, facing.crack, line, place, |segment| !is_of_trunk(segment)) as u32;
+        pairs.push(FacePair { above, below, node: node as u32, crack: facing.crack, segment, force: [0.0; 2] });
+    }
+}
+
+/// The segment of a crack nearest to `place` of those that count.
+fn nearest_segment(
+    lattice: &Lattice,
+    crack: u32,
+    line: &Crack,
+    place: Point,
+    counts: impl Fn(&usize) -> bool + Copy,
+) -> usize {
     // Around a vertex both its segments are equally near, up to round-off: the first one counts.
     let clearly = 1e-9 * lattice.grid.cell_size;
     let around = lattice.division.segments_around(crack, place);
-    let (distance, segment) = nearest_of(around.into_iter(), line, place, clearly);
+    let (distance, segment) = nearest_of(around.into_iter().filter(counts), line, place, clearly);
     if distance < lattice.division.surroundings() - 2.0 * clearly {
         return segment;
     }
     // Ahead of a tip or beyond a mouth, where few nodes are, what is nearest may lie anywhere.
-    nearest_of(0..line.points.len() - 1, line, place, clearly).1
+    nearest_of((0..line.points.len() - 1).filter(counts), line, place, clearly).1
 }
 
 /// Distance to the nearest of `segments` [m], which rise, and which it is; one counts as nearer than those before it

@@ -11,7 +11,7 @@ use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::crossing::Side;
 use crate::solver::Observed;
 use crate::tip::bend::Bend;
-use crate::tip::frame::{side_of, tip_of, turn};
+use crate::tip::frame::{line_around, side_of, tip_of, turn};
 use crate::tip::zone::{FaceContact, QuadraturePoint, TipZone};
 use fissure_plane::{Matrix, Point, Vector};
 use fissure_scene::End;
@@ -63,6 +63,7 @@ impl Observed for Look<'_> {
         let back = rotation.transpose();
         let (_, back_minus_one) = turn(2.0 + mean.m11 + mean.m22, mean.m12 - mean.m21);
         let frame = Matrix::new(ahead.x, ahead.y, -ahead.y, ahead.x);
+        let around = line_around(cracks, id, radius, |crack, point| cracks[crack].points[point]);
         let mut points = Vec::with_capacity(found.len());
         for (p, h) in found {
             let e = lattice.material(p);
@@ -73,7 +74,7 @@ impl Observed for Look<'_> {
             points.push(QuadraturePoint {
                 place: frame * arm,
                 displacement: frame * (back * displacement + back_minus_one * arm),
-                side: side_of(&line.points, id.end, ahead, particles.rest[p]),
+                side: side_of(&around, id.end, ahead, particles.rest[p]),
                 volume: particles.volume[p],
                 stress: into(back * crate::first_piola_stress(&h, e.mu, e.lambda)),
                 gradient: into(back * h + back_minus_one),
@@ -87,21 +88,23 @@ impl Observed for Look<'_> {
         }
         let (opening, opening_distance) = self.opening(cracks, id, frame * back);
         let into = frame * back;
-        let sign = left_of_tip(id.end).sign();
-        let contacts = self
-            .contacts
-            .forces(id.crack, lattice)
+        let trail = cracks.trail(id);
+        let forces = trail.iter().flat_map(|&stretch| {
+            let sign = if stretch.is_backwards() { 1.0 } else { -1.0 };
+            self.contacts.forces(stretch, lattice).map(move |(place, force)| (place, force * sign))
+        });
+        let contacts = forces
             // Elsewhere the crack may have come back behind the tip.
             .filter(|(place, _)| (place - tip).norm() < radius + 2.0 * lattice.grid.cell_size)
             .map(|(place, force)| {
                 let place = frame * (place - tip);
-                FaceContact { place, behind: -place.x, force: into * force * sign }
+                FaceContact { place, behind: -place.x, force: into * force }
             })
             .collect();
         let beyond = radius + 2.0 * lattice.grid.cell_size;
         let has_kink = cracks.way_to_kink(id, beyond).is_some();
         let bend = has_kink.then(|| {
-            let behind = line.behind(id.end, beyond);
+            let behind = cracks.behind(id, beyond);
             Bend::new(behind.into_iter().rev().map(|place| Point::from(frame * (place - tip))).collect())
         });
         TipZone { points, contacts, bend, opening, opening_distance }

@@ -4,7 +4,7 @@
 //! conserved to round-off and kinetic energy can only fall (fields merge inelastically). A field that is new takes the
 //! displacement of the fields its mass came from, so that at the moment of the cut the strain does not change; a field
 //! that was there keeps its own. Where a tip divides, what lies between the branches is made of both sides of the
-//! crack; a further field of it takes the mean, whether it was there or not, or mirrored branches would differ.
+//! crack; a field of it takes the mean, whether it was there or not, or mirrored branches would differ.
 
 use super::lattice::Lattice;
 use super::motion::Motion;
@@ -172,7 +172,7 @@ impl Lattice {
                 let moved = &mut motion.displacement[axis][d];
                 if kept == 0.0 {
                     *moved = t.displacement_in[axis] / t.mass_in;
-                } else if divides && d >= self.grid.len() {
+                } else if divides && t.mass_in > 0.0 {
                     *moved = (kept * *moved + t.displacement_in[axis]) / total;
                 }
             }

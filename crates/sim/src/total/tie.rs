@@ -31,7 +31,7 @@ use serde::{Deserialize, Serialize};
 /// A spring between two fields of one node.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) struct Tie {
-    /// The fields it ties.
+    /// The fields it ties, above the crack and below it.
     pub(super) first: u32,
     pub(super) second: u32,
     /// Their node.
@@ -211,14 +211,15 @@ impl Tie {
         now.dot(&before) + units.inertia_per_stiffness() * rate.norm_squared()
     }
 
-    /// Takes over from what tied the same fields before: a tie that has become stiffer, or is new between fields that
-    /// lie apart, holds with the force that was there.
+    /// Takes over from what tied the same material before, under other names of its fields maybe: a tie that has become
+    /// stiffer, or is new between fields that lie apart, holds with the force that was there.
     pub(super) fn take_over(&mut self, before: Option<&Self>, u: &FieldVectors) {
         match before {
             Some(before) if before.stiffness >= self.stiffness => self.rest = before.rest,
             _ => {
-                let force = before.map_or(Vector::zeros(), |before| before.stretch(u) * before.stiffness);
-                self.rest = self.opening(u) - force / self.stiffness.max(f64::MIN_POSITIVE);
+                let opening = self.opening(u);
+                let force = before.map_or(Vector::zeros(), |before| (opening - before.rest) * before.stiffness);
+                self.rest = opening - force / self.stiffness.max(f64::MIN_POSITIVE);
             }
         }
     }

@@ -121,8 +121,8 @@ impl Ties {
             let is_tip = cracks.end(id) == CrackEnd::Tip;
             let mut ties = if is_tip { ties_at(lattice, cracks, id) } else { Vec::new() };
             let before = self.of_tip.remove(&id).unwrap_or_default();
-            for tie in &mut ties {
-                let same = before.iter().find(|b| (b.first, b.second) == (tie.first, tie.second));
+            let takes_over: Vec<Option<&Tie>> = ties.iter().map(|tie| same_tie(tie, &ties, &before)).collect();
+            for (tie, same) in ties.iter_mut().zip(takes_over) {
                 tie.take_over(same, &motion.displacement);
             }
             changed.extend(ties.iter().chain(&before).map(|tie| tie.node));
@@ -245,6 +245,14 @@ impl Ties {
     }
 }
 
+/// The tie among those `before` that `tie`, one of `all`, is now: of the same fields, or the only one of its node, the
+/// fields of which have other names where it is so near the line of the crack that rounding decides on its side.
+fn same_tie<'t>(tie: &Tie, all: &[Tie], before: &'t [Tie]) -> Option<&'t Tie> {
+    let same = before.iter().find(|b| (b.first, b.second) == (tie.first, tie.second));
+    let is_only = |ties: &[Tie]| ties.iter().filter(|other| other.node == tie.node).count() == 1;
+    same.or_else(|| before.iter().find(|b| b.node == tie.node).filter(|_| is_only(all) && is_only(before)))
+}
+
 /// The ties that a tip should have where it is now.
 fn ties_at(lattice: &Lattice, cracks: &Cracks, id: TipId) -> Vec<Tie> {
     let h = lattice.grid.cell_size;
@@ -268,8 +276,8 @@ fn ties_at(lattice: &Lattice, cracks: &Cracks, id: TipId) -> Vec<Tie> {
             let stiffness_of = |field: u32| fields.iter().zip(&stiffness).find(|f| *f.0 == field).map_or(0.0, |f| *f.1);
             let facing = lattice.fields().facing_pairs(&fields).filter(|pair| pair.crack as usize == id.crack);
             ties.extend(facing.map(|pair| {
-                let stiffness = [pair.first, pair.second].map(stiffness_of);
-                Tie::new([pair.first, pair.second], (node as u32, place), stiffness, ahead, units)
+                let fields = pair.above_and_below();
+                Tie::new(fields, (node as u32, place), fields.map(stiffness_of), ahead, units)
             }));
         }
     }

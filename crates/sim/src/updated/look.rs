@@ -4,7 +4,7 @@ use super::Updated;
 use super::points::Motion;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::solver::Observed;
-use crate::tip::frame::{side_of, tip_of, turn};
+use crate::tip::frame::{line_around, side_of, tip_of, turn};
 use crate::tip::zone::{FaceContact, QuadraturePoint, TipZone};
 use fissure_scene::{End, Matrix, Point, Vector};
 
@@ -50,7 +50,7 @@ impl Observed for Updated {
 }
 
 /// The axes of a tip.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct TipAxes {
     id: TipId,
     /// [m].
@@ -61,6 +61,8 @@ struct TipAxes {
     ahead: Vector,
     /// From the world into the frame of the tip.
     frame: Matrix,
+    /// The crack around the tip as it is now [m].
+    line: Vec<Point>,
 }
 
 impl Updated {
@@ -69,7 +71,9 @@ impl Updated {
     fn zone(&self, cracks: &Cracks, id: TipId, radius: f64, time_step: Option<f64>) -> TipZone {
         let (tip, ahead) = self.tip_now(cracks, id);
         let tip_at_rest = cracks.position(id);
-        let axes = TipAxes { id, tip, tip_at_rest, ahead, frame: Matrix::new(ahead.x, ahead.y, -ahead.y, ahead.x) };
+        let frame = Matrix::new(ahead.x, ahead.y, -ahead.y, ahead.x);
+        let line = line_around(cracks, id, radius, |crack, point| self.faces.cracks[crack].position[point]);
+        let axes = TipAxes { id, tip, tip_at_rest, ahead, frame, line };
         let mut found: Vec<(usize, Matrix)> = Vec::new();
         let mut mean = Matrix::zeros();
         for (p, point) in self.points.point.iter().enumerate() {
@@ -112,7 +116,7 @@ impl Updated {
             place: frame * (point.position - axes.tip),
             displacement: frame
                 * (point.position - axes.tip - turned.0 * (particles.rest[particle] - axes.tip_at_rest)),
-            side: side_of(&self.faces.cracks[axes.id.crack].position, axes.id.end, axes.ahead, point.position),
+            side: side_of(&axes.line, axes.id.end, axes.ahead, point.position),
             volume: particles.volume[particle] * ratio,
             stress: into(crate::kirchhoff_stress(elastic, mu, lambda) / ratio),
             gradient: into(gradient),
