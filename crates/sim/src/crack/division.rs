@@ -22,6 +22,8 @@ pub(crate) type CrossedSet = Vec<(u32, Side)>;
 
 /// How far behind the tip, in cells, the crack counts as divided by particle position.
 pub(crate) const WINDOW: f64 = 2.0;
+/// How far ahead of the tip, in cells, the crack is thought to go on.
+const AHEAD: f64 = WINDOW + 2.0;
 
 /// How pairs around a tip are split with [`TipDivision::PartlyCut`]. Lengths in cells.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -117,6 +119,8 @@ struct Line {
     kinds: Vec<SegmentKind>,
     /// Segment of the crack that each prepared one is, or carries on.
     of: Vec<u32>,
+    /// Whether each is so near to a tip that the tip says how it divides: see [`divide`].
+    at_tip: Vec<bool>,
     /// Whether it has a continuation beyond a junction.
     has_junction: bool,
     /// Within so far of its start, along each axis [m], nodes count as around it: farther away none sees both the trunk
@@ -353,7 +357,7 @@ fn prepare(line: &CrackLine, tip_division: TipDivision, cut: TipCut, cell_size: 
             LineEnd::Junction { crack, beyond } => (beyond, SegmentKind::BeyondJunction(crack)),
             LineEnd::Tip if tip_division == TipDivision::PartlyCut => {
                 tips.push(TipRay { position: from, ahead });
-                ((WINDOW + 2.0) * cell_size, SegmentKind::AheadOfTip)
+                (AHEAD * cell_size, SegmentKind::AheadOfTip)
             }
             LineEnd::Tip => return None,
         };
@@ -382,20 +386,30 @@ fn prepare(line: &CrackLine, tip_division: TipDivision, cut: TipCut, cell_size: 
         }
     }
     let has_junction = kinds.iter().any(|k| matches!(k, SegmentKind::BeyondJunction(_)));
-    Line {
-        crack: line.crack,
-        segments,
-        tips,
-        cut,
-        kinds,
-        of,
-        has_junction,
-        around_start: around_fork(reach, cell_size),
-    }
+    let of_line = near_tips(line, WINDOW * cell_size);
+    let at_tip = of.iter().zip(&kinds).map(|(&of, &kind)| kind == SegmentKind::AlongTrunk || of_line[of as usize]);
+    let at_tip = at_tip.collect();
+    let around_start = around_fork(reach, cell_size);
+    Line { crack: line.crack, segments, tips, cut, kinds, of, at_tip, has_junction, around_start }
 }
 
 fn around_fork(reach: f64, cell_size: f64) -> f64 {
     2.0 * reach * cell_size
+}
+
+/// Of each segment of a crack, whether its way to a tip along the crack is less than `within` [m].
+fn near_tips(line: &CrackLine, within: f64) -> Vec<bool> {
+    let n = line.points.len() - 1;
+    let mut near = vec![false; n];
+    for (end, is_last) in [(line.start, false), (line.end, true)] {
+        let mut way = 0.0;
+        for j in (0..n).take_while(|_| end == LineEnd::Tip) {
+            let k = if is_last { n - 1 - j } else { j };
+            near[k] |= way < within;
+            way += (line.points[k + 1] - line.points[k]).norm();
+        }
+    }
+    near
 }
 
 /// The crack across which two fields face each other, and the side of the first; none when they differ by more than one
@@ -436,6 +450,9 @@ fn ramp(behind: f64, width: f64) -> (f64, f64) {
 }
 
 /// How `line` divides a pair; none when the pair is whole. `crossed` are the other cracks that the pair crosses.
+///
+/// What a tip has left behind divides wholly, wherever the tip has gone from there: a crack may turn until a part of it
+/// lies ahead of its tip.
 fn divide(
     line: &Line,
     segments: &[(u32, u32)],
@@ -451,12 +468,17 @@ fn divide(
         SegmentKind::Real | SegmentKind::AheadOfTip => true,
     };
     let met = line.meeting(segments, particle, node, counts);
+    let whole = |side: Side| PairCut { side, fraction: 1.0, gradient: Vector::zeros() };
+    if met.crossed.iter().any(|&segment| !line.at_tip[segment as usize]) {
+        let real = |kind: SegmentKind| kind != SegmentKind::AheadOfTip && counts(kind);
+        return line.meeting(segments, particle, node, real).side.map(whole);
+    }
     let side = met.side?;
     let crosses_real = met.crossed.iter().any(|&segment| line.kinds[segment as usize] != SegmentKind::AheadOfTip);
     for tip in &line.tips {
         let behind = -(particle - tip.position).dot(&tip.ahead);
         let beside = (particle - tip.position).perp(&tip.ahead).abs();
-        if behind > WINDOW * cell_size || beside > WINDOW * cell_size {
+        if behind > WINDOW * cell_size || behind < -AHEAD * cell_size || beside > WINDOW * cell_size {
             continue;
         }
         if (node - tip.position).dot(&tip.ahead) > line.cut.node_ahead * cell_size {
@@ -464,7 +486,7 @@ fn divide(
         }
         // A domain of no size asks for the side, not for a share.
         if domain > 0.0 && !line.cut.shares {
-            return Some(PairCut { side, fraction: 1.0, gradient: Vector::zeros() });
+            return Some(whole(side));
         }
         let (fraction, slope) = ramp(behind - line.cut.behind * cell_size, domain);
         if fraction == 0.0 {
@@ -473,7 +495,7 @@ fn divide(
         let gradient = -tip.ahead * slope;
         return Some(PairCut { side, fraction, gradient });
     }
-    crosses_real.then_some(PairCut { side, fraction: 1.0, gradient: Vector::zeros() })
+    crosses_real.then_some(whole(side))
 }
 
 #[cfg(test)]
@@ -532,6 +554,26 @@ mod tests {
             fields.sort();
             fields.dedup();
             prop_assert_eq!(fields.len(), shares.len());
+        }
+
+        /// Truth: the construction. A crack that lies straight ahead of its own tip, farther than anything is thought
+        /// of there, divides as if it had no tip.
+        #[test]
+        fn a_tip_changes_nothing_far_ahead_of_it(
+            points in prop::collection::vec(any_point(), 4..8), cut in any_cut(),
+            pairs in prop::collection::vec((AHEAD..12.0, -2.0_f64..2.0, -1.0_f64..1.0, -1.0_f64..1.0), 200),
+        ) {
+            let line = |end| CrackLine { crack: 0, points: points.clone(), start: LineEnd::Open(0.0), end, trunk: Vec::new() };
+            let of = |end| division(&[line(end)], TipDivision::PartlyCut, cut);
+            let (with_tip, without) = (of(LineEnd::Tip), of(LineEnd::Open(0.0)));
+            let [.., before, tip] = points[..] else { return Ok(()) };
+            let ahead = (tip - before).normalize();
+            for (along, beside, x, y) in pairs {
+                // A pair reaches over 1.5 cells.
+                let particle = tip + ahead * (along + 1.5) + Vector::new(-ahead.y, ahead.x) * beside;
+                let node = particle + Vector::new(x, y);
+                prop_assert_eq!(with_tip.pair(particle, node), without.pair(particle, node));
+            }
         }
 
         /// Truth: every segment of every crack asked in turn. The cells find what a search without them finds.
