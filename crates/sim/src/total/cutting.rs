@@ -10,6 +10,7 @@ use crate::grid::walker::Walker;
 impl Lattice {
     /// Entries of a particle, cut by the cracks as they are; fields that do not exist yet are made.
     pub(super) fn make_entries(&mut self, particle: usize) -> Vec<Entry> {
+        let particle = self.layout.riders.host(particle).unwrap_or(particle);
         let (place, body) = (self.particles.rest[particle], self.particles.body[particle]);
         let stencil = self.stencil(place);
         // Of what an outline cuts, the mean gradient is that at its centre. Its mass stays where the particle stands,
@@ -137,6 +138,7 @@ impl Lattice {
         }
         let stencils = stencils.into_iter().map(|p| (p, self.make_entries(p))).collect();
         self.layout.cut.replace(stencils);
+        self.seat_riders();
         let mut mass = vec![0.0; self.field_count()];
         let mut reader = self.reader();
         for p in 0..self.particles.len() {

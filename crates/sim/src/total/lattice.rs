@@ -2,6 +2,7 @@
 //! grows.
 
 use super::cut::CutParticles;
+use super::riders::Riders;
 use super::run::Run;
 use crate::SimulationError;
 use crate::crack::cracks::Cracks;
@@ -55,6 +56,8 @@ pub(super) struct Layout {
     pub(super) cut: CutParticles,
     /// Runs of uncut cells above each row of nodes.
     pub(super) runs: Vec<Vec<Run>>,
+    /// Particles that ride on others: see [`super::riders`].
+    pub(super) riders: Riders,
 }
 
 impl Lattice {
@@ -83,6 +86,7 @@ impl Lattice {
             mass: vec![0.0; grid.len()],
             cut: CutParticles::new(particles.len()),
             runs: vec![Vec::new(); grid.rows()],
+            riders: Riders::default(),
         };
         let owners =
             if scene.bodies.len() > 1 { owners_of_nodes(kernel, &grid, &particles) } else { Owners::default() };
@@ -232,6 +236,7 @@ impl Lattice {
         saved::ensure(layout.mass.len() == fields, "its number of fields")?;
         saved::finite("a field", &layout.mass)?;
         layout.cut.check(self.particles.len(), fields)?;
+        layout.riders.check(self.particles.len())?;
         saved::ensure(layout.runs.len() == self.grid.rows(), "its number of rows")?;
         for (index, runs) in layout.runs.iter().enumerate() {
             let row = self.grid.row(index);

@@ -29,6 +29,7 @@ mod probes;
 mod range;
 mod reader;
 mod recut;
+mod riders;
 mod rows;
 mod run;
 mod snapshot;

@@ -115,7 +115,8 @@ impl Lattice {
         let mut nearest: Option<(bool, f64, usize)> = None;
         for reach in [2, 6] {
             let (low, high) = (center.map(|c| c.saturating_sub(reach)), center.map(|c| c.saturating_add(reach)));
-            for p in self.particles.within(low, high).filter(|&p| self.particles.body[p] == body) {
+            let own = |&p: &usize| self.particles.body[p] == body && self.layout.riders.host(p).is_none();
+            for p in self.particles.within(low, high).filter(own) {
                 let place = self.particles.rest[p];
                 let across = self.is_across(body, place, nudged);
                 let candidate = (across, (place - rest).norm_squared(), p);
