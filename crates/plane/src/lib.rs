@@ -36,6 +36,7 @@ mod polyline;
 mod predicate;
 mod region;
 mod ring;
+mod rows;
 mod segment;
 
 pub use crossing::find_crossing;
@@ -46,4 +47,5 @@ pub use polyline::polyline_length;
 pub use predicate::{is_left_of, orientation, segments_touch};
 pub use region::{Region, RingPlace};
 pub use ring::{circle_ring, clean_ring, oriented, signed_area};
+pub use rows::RingRows;
 pub use segment::{distance_to_segment, nearest_on_segment, segment_distance};

@@ -1,105 +1,108 @@
 //! The bodies as solids, with or without their cracks.
 
-use crate::boolean::material;
+use crate::boolean::{Shape, material, twice_area};
+use crate::edges::MovedLines;
 use crate::error::PostError;
 use crate::extrude::Extrusion;
 use crate::mesh::{Content, Mesh, object_name};
-use crate::opening::opening_edges;
 use crate::options::PostOptions;
 use crate::outline::outline_edges;
-use crate::pieces::{Polygon, pieces, without_slivers};
+use crate::pieces::numbers;
 use crate::pinch::part_pinches;
-use crate::seam::{guests, join};
+use crate::slivers::without_slivers;
 use crate::snap::Grid;
 use crate::source::SourceEdge;
-use fissure_scene::{CrackEnd, CrackFrame, Frame, OutlineFrame, Scene};
+use fissure_scene::{Fragments, Frame, Scene};
 use std::collections::BTreeMap;
 
-/// One solid per body and fragment, in that order; `with_cracks`: the cracks are cut out.
-pub(crate) fn body_meshes(
-    scene: &Scene,
-    frame: &Frame,
-    options: &PostOptions,
-    with_cracks: bool,
-) -> Result<Vec<Mesh>, PostError> {
-    let mut meshes = Vec::new();
-    for body in 0..scene.bodies.len() {
-        let (polygons, sources, grid) = body_polygons(scene, frame, options, body, with_cracks)?;
-        meshes.extend(solids(scene, options, body, polygons, &sources, grid));
+/// One solid per fragment, by body and number.
+///
+/// Each is made of its own boundary alone, so that what touches or overlaps is never joined.
+pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result<Vec<Mesh>, PostError> {
+    let fragments = Fragments::of_frame(frame);
+    let lines = MovedLines::new(scene, frame);
+    let grids = grids(scene, frame, true)?;
+    let mut sources = BTreeMap::<(u32, u32), Vec<SourceEdge>>::new();
+    for (fragment, number) in fragments.list().iter().zip(numbers(&fragments, frame)) {
+        let grid = grids[fragment.body as usize];
+        let edges = fragment.boundaries.iter().flat_map(|boundary| lines.edges(boundary, grid));
+        sources.entry((fragment.body, number)).or_default().extend(edges);
+    }
+    let mut meshes = Vec::with_capacity(sources.len());
+    for ((body, piece), sources) in sources {
+        meshes.extend(solid(scene, frame, options, Part { body, piece, sources, grid: grids[body as usize] })?);
     }
     Ok(meshes)
 }
 
-/// The pieces of one body, with the sources of their edges and the grid they lie on.
-fn body_polygons(
-    scene: &Scene,
-    frame: &Frame,
-    options: &PostOptions,
-    body: usize,
-    with_cracks: bool,
-) -> Result<(Vec<Polygon>, Vec<SourceEdge>, Grid), PostError> {
-    let outlines: Vec<&OutlineFrame> = frame.outlines.iter().filter(|o| o.body as usize == body).collect();
-    let cracks: Vec<&CrackFrame> = frame.cracks.iter().filter(|c| with_cracks && c.body as usize == body).collect();
-    let faces = cracks.iter().flat_map(|c| c.above.iter().chain(&c.below));
-    let grid = Grid::covering(outlines.iter().flat_map(|o| &o.position).chain(faces));
-
-    let (low, high) = scene.bodies[body].region.bounds();
-    grid.check(frame.number, &scene.bodies[body].name, (high - low).amax())?;
-
-    let mut rings: Vec<Vec<SourceEdge>> = outlines.iter().map(|o| outline_edges(o, grid)).collect();
-    let first = |crack: &CrackFrame| scene.cracks.get(crack.crack as usize).and_then(|c| c.points.first().copied());
-    let mut openings: Vec<Vec<SourceEdge>> = cracks.iter().map(|c| opening_edges(c, first(c), grid)).collect();
-    for guest in cracks.iter().flat_map(|c| guests(c, grid)) {
-        let trunk = |crack: u32| cracks.iter().position(|c| c.crack == crack);
-        match guest.end {
-            CrackEnd::Mouth => join(&mut rings, &guest),
-            CrackEnd::Junction { crack } => {
-                if let Some(at) = trunk(crack) {
-                    join(&mut openings[at..=at], &guest);
-                }
-            }
-            CrackEnd::Tip => {}
-        }
+/// One solid per body, without its cracks.
+pub(crate) fn whole_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result<Vec<Mesh>, PostError> {
+    let grids = grids(scene, frame, false)?;
+    let mut meshes = Vec::with_capacity(grids.len());
+    for (body, grid) in (0..).zip(grids) {
+        let rings = frame.outlines.iter().filter(|o| o.body == body);
+        let sources = rings.flat_map(|outline| outline_edges(outline, grid)).collect();
+        let particles = &frame.particles;
+        let of_body = (0..particles.len()).filter(|&p| particles.body[p] == body);
+        let piece = of_body.map(|p| particles.piece[p]).min().unwrap_or(0);
+        meshes.extend(solid(scene, frame, options, Part { body, piece, sources, grid })?);
     }
-    let mut sources: Vec<SourceEdge> = rings.into_iter().chain(openings).flatten().collect();
+    Ok(meshes)
+}
+
+/// The grid of each body.
+fn grids(scene: &Scene, frame: &Frame, with_cracks: bool) -> Result<Vec<Grid>, PostError> {
+    let grid = |(number, body): (u32, &fissure_scene::Body)| {
+        let outlines = frame.outlines.iter().filter(|o| o.body == number);
+        let cracks = frame.cracks.iter().filter(|c| with_cracks && c.body == number);
+        let faces = cracks.flat_map(|c| c.above.iter().chain(&c.below));
+        let grid = Grid::covering(outlines.flat_map(|o| &o.position).chain(faces));
+        let (low, high) = body.region.bounds();
+        grid.check(frame.number, &body.name, (high - low).amax())?;
+        Ok(grid)
+    };
+    (0..).zip(&scene.bodies).map(grid).collect()
+}
+
+/// What becomes one solid.
+struct Part {
+    body: u32,
+    /// Number of the fragment.
+    piece: u32,
+    /// Its boundary.
+    sources: Vec<SourceEdge>,
+    /// The grid it lies on.
+    grid: Grid,
+}
+
+/// Extrudes what the boundary of a part encloses; nothing where that is no more than rounding.
+fn solid(scene: &Scene, frame: &Frame, options: &PostOptions, part: Part) -> Result<Option<Mesh>, PostError> {
+    let Part { body, piece, mut sources, grid } = part;
+    let body = &scene.bodies[body as usize];
     let shapes = without_slivers(material(&sources));
     let parted = part_pinches(shapes, &mut sources).map_err(|place| {
         let place = grid.place(place);
-        PostError::Pinch { frame: frame.number, body: scene.bodies[body].name.clone(), x: place.x, y: place.y }
+        PostError::Pinch { frame: frame.number, body: body.name.clone(), x: place.x, y: place.y }
     })?;
+    let area = |shape: &Shape| 0.5 * shape.iter().map(|c| twice_area(c)).sum::<i128>() as f64 * grid.step * grid.step;
     let whole = without_slivers(parted);
-    Ok((pieces(whole, grid, &frame.particles, body as u32, options.smallest_fragment), sources, grid))
-}
-
-/// Extrudes the polygons; those of one fragment become one mesh.
-fn solids(
-    scene: &Scene,
-    options: &PostOptions,
-    body: usize,
-    polygons: Vec<Polygon>,
-    sources: &[SourceEdge],
-    grid: Grid,
-) -> Vec<Mesh> {
-    let body = &scene.bodies[body];
+    let polygons = whole.into_iter().map(|shape| (area(&shape), shape));
+    let polygons: Vec<(f64, Shape)> = polygons.filter(|(area, _)| *area >= options.smallest_fragment).collect();
+    if polygons.is_empty() {
+        return Ok(None);
+    }
     let (low, high) = body.region.bounds();
     let extrusion = Extrusion {
         grid,
-        sources,
+        sources: &sources,
         thickness: options.thickness,
         crease_angle: options.crease_angle,
         texture_origin: low,
         texture_size: (high - low).amax(),
     };
-    let mut by_piece = BTreeMap::<u32, Vec<Polygon>>::new();
-    for polygon in polygons {
-        by_piece.entry(polygon.piece).or_default().push(polygon);
-    }
-    let solid = |(piece, polygons): (u32, Vec<Polygon>)| {
-        let area = polygons.iter().map(|p| p.area).sum();
-        let name = object_name(&body.name, "piece", piece);
-        let mut mesh = Mesh::new(name, piece, Content::Solid { area, thickness: options.thickness });
-        polygons.iter().for_each(|p| extrusion.solid(&p.shape, &mut mesh));
-        mesh
-    };
-    by_piece.into_iter().map(solid).collect()
+    let area = polygons.iter().map(|(area, _)| area).sum();
+    let name = object_name(&body.name, "piece", piece);
+    let mut mesh = Mesh::new(name, piece, Content::Solid { area, thickness: options.thickness });
+    polygons.iter().for_each(|(_, shape)| extrusion.solid(shape, &mut mesh));
+    Ok(Some(mesh))
 }

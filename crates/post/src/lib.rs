@@ -4,27 +4,29 @@
 //!
 //! The stages of a cracked body, one module each:
 //! 1. `snap`: all positions go onto a power-of-two grid that is exact in `f32`.
-//! 2. `outline`, `opening`: the moved rings and the opening polygons of the cracks become boundary edges, each of which
-//!    knows the rest position, velocity and arc length of the material at its ends.
-//!    `seam`: where a crack ends on a ring or on another crack, that boundary is parted if the solver has not done so.
-//! 3. `boolean`: material is where the edges wind around a place at least once. An open crack takes one off; where
-//!    faces overlap one is added, so closed cracks have no walls; fragments may turn and fly apart as they like.
-//! 4. `pieces`: slivers that are mere rounding go; polygons get the fragment numbers of the simulation.
+//! 2. `pieces`, `edges`: the fragments of the frame ([`fissure_scene::Fragments`]) get the numbers of the simulation,
+//!    and each its own boundary: edges of moved rings and crack faces that know the rest position, velocity and arc
+//!    length of the material at their ends. `outline`: a body without its cracks.
+//! 3. `boolean`: a fragment is where its own edges wind around a place at least once. An open crack in it takes one
+//!    off; where its faces overlap one is added, so cracks that are closed have no walls. Fragments may turn, fly
+//!    apart, touch and come to lie on each other as they like: each keeps its walls.
+//! 4. `slivers`: what is mere rounding goes.
 //! 5. `pinch`: contours that touch in a point are parted, so that the solid is manifold for every reader.
 //! 6. `triangulate`, `extrude`: caps and walls, with normals, texture coordinates, velocities and material slots.
 //! 7. [`Mesh::check`]: closed, manifold, oriented, volume = area × thickness, in the precision of the file.
 //! 8. `glb`, `ply`: the bytes of files; `write`, `manifest`: the files, with the feature `files`, which is on by
 //!    default.
 //!
-//! Promised: every solid that is returned has passed the check. Not promised: that polygons of different bodies, or of
-//! fragments that the simulation lets overlap in different bodies, stay apart; openings below two grid steps (4e-6 m in
-//! a body of 20 m) may be shown closed.
+//! Promised: every solid that is returned has passed the check, and each fragment that holds a particle is one solid in
+//! every frame, unless `smallest_fragment` leaves it out. Not promised: that solids that the simulation lets overlap
+//! stay apart; openings below two grid steps (4e-6 m in a body of 20 m) may be shown closed.
 
 #[doc(hidden)]
 pub mod bench;
 mod boolean;
 mod colliders;
 mod cracked;
+mod edges;
 mod error;
 mod extrude;
 mod faces;
@@ -46,7 +48,7 @@ mod post;
 mod provenance;
 #[cfg(feature = "files")]
 mod record;
-mod seam;
+mod slivers;
 mod slot;
 mod snap;
 mod source;

@@ -14,13 +14,7 @@ use fissure_scene::{CrackEnd, CrackFrame, Point, Vector};
 ///      └───────────────────╱
 ///        ←  ←  ←  below
 /// ```
-/// An open crack runs clockwise this way, as a hole does. Added to the counter-clockwise outline its winding takes one
-/// off: material is where the sum stays positive. Where the faces overlap (contact) the polygon is inverted and the sum
-/// is two: still material, no wall.
-///
-/// At a tip the faces meet halfway between their ends. At a mouth the closing edge is, to the bit, the reverse of the
-/// edge between the two outline tracers there, so that both cancel and the mouth is open, however far the two sides
-/// have moved apart; likewise at a junction, against the face of the other crack.
+/// At a tip the faces meet halfway between their ends.
 ///
 /// `first`: where the arc length is counted from (a rest position on the crack), so that textures stay put when the
 /// crack grows at its start; none: its first point.
@@ -55,7 +49,7 @@ pub(crate) fn opening_edges(crack: &CrackFrame, first: Option<Point>, grid: Grid
 }
 
 /// Length at rest along the crack at each point [m], zero at the point nearest to `first`.
-fn arc_lengths(rest: &[Point], first: Option<Point>) -> Vec<f64> {
+pub(crate) fn arc_lengths(rest: &[Point], first: Option<Point>) -> Vec<f64> {
     let mut arcs = Vec::with_capacity(rest.len());
     let mut arc = 0.0;
     for i in 0..rest.len() {

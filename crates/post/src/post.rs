@@ -1,7 +1,7 @@
 //! From a frame to meshes.
 
 use crate::colliders::collider_meshes;
-use crate::cracked::body_meshes;
+use crate::cracked::{cracked_meshes, whole_meshes};
 use crate::error::PostError;
 use crate::faces::face_meshes;
 use crate::mesh::Mesh;
@@ -33,8 +33,8 @@ pub fn post_frame(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result
     let mut parts = Vec::with_capacity(options.parts.len());
     for &part in &options.parts {
         let meshes = match part {
-            Part::Cracked => body_meshes(scene, frame, options, true)?,
-            Part::Body => body_meshes(scene, frame, options, false)?,
+            Part::Cracked => cracked_meshes(scene, frame, options)?,
+            Part::Body => whole_meshes(scene, frame, options)?,
             Part::Faces => face_meshes(scene, frame, options),
             Part::Collider => collider_meshes(scene, frame, options)?,
             Part::Particles => particle_meshes(scene, frame),

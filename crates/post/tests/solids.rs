@@ -6,6 +6,7 @@ mod common;
 mod winding;
 
 use common::{Opened, frame, halves, options, scene, square};
+use fissure_plane::find_crossing;
 use fissure_post::{Content, Mesh, PostError, Slot, post_frame};
 use fissure_scene::{CrackEnd, Frame, Part, Point, Region, Scene, Vector};
 use proptest::prelude::*;
@@ -99,11 +100,15 @@ fn edge_crack_across(size: f64, opening: f64) -> Opened {
 #[test]
 fn fragments_turn_and_fly_apart() {
     let far = Vector::new(37.0, -11.0);
-    // Upside down and away; swapped sides; a small gap; a corner that overlaps the other half.
+    // Upside down and away; swapped sides; a small gap; in contact; a corner that overlaps the other half; one on the
+    // other.
     for motions in [
         [(0.0, Vector::zeros()), (3.0, far)],
         [(1.0, far), (-2.0, -far)],
         [(0.0, Vector::zeros()), (0.0, Vector::new(1e-3, 0.0))],
+        [(0.0, Vector::zeros()), (0.0, Vector::zeros())],
+        [(0.0, Vector::zeros()), (0.1, Vector::new(0.2, 0.0))],
+        [(0.0, Vector::zeros()), (0.0, Vector::new(-10.0, 0.0))],
     ] {
         let (scene, frame) = halves(20.0, motions);
         let meshes = cracked(&scene, &frame);
@@ -113,9 +118,6 @@ fn fragments_turn_and_fly_apart() {
             assert_eq!(mesh.slot(Slot::Inside).len(), 2 * 8);
         }
     }
-    let (scene, frame) = halves(20.0, [(0.0, Vector::zeros()), (0.1, Vector::new(0.2, 0.0))]);
-    let meshes = cracked(&scene, &frame);
-    assert!((area(&meshes) - brute_force_area(&frame)).abs() < 1e-3);
 }
 
 #[test]
@@ -269,7 +271,7 @@ fn open_cracks_that_cross_leave_one_hole() {
 }
 
 #[test]
-fn a_polygon_without_particles_belongs_to_the_nearest() {
+fn a_fragment_without_particles_goes_with_its_neighbour() {
     let (scene, mut frame) = halves(20.0, [(0.0, Vector::zeros()), (0.0, Vector::new(1.0, 0.0))]);
     let particles = &mut frame.particles;
     let keep = particles.position.iter().position(|p| p.x < 10.0).unwrap();
@@ -399,6 +401,8 @@ fn random_crack() -> impl Strategy<Value = Opened> {
                 let s = i as f64 / last as f64;
                 let wander = if i == 0 || i == last { 0.0 } else { 0.02 * wander };
                 rest.push(Point::new(size * (x0 + s * (x1 - x0)), size * (y0 + s * (y1 - y0) + wander)));
+                // Parts of a body that is cut through stay apart, so that they cover what they have.
+                let (slide, normal) = if ends == 0 { (0.0, normal.abs()) } else { (slide, normal) };
                 let moved = 10.0_f64.powf(exponent) * Vector::new(slide, normal);
                 above.push(moved);
                 below.push(-moved);
@@ -408,12 +412,18 @@ fn random_crack() -> impl Strategy<Value = Opened> {
     )
 }
 
-/// Area of the solids against brute force; `post_frame` itself checks that they are solids.
+/// Area of the solids against brute force where no two cracks cross; `post_frame` itself checks that they are solids.
 fn agrees_with_brute_force(cracks: &[Opened]) -> Result<(), String> {
     let region = square(20.0);
     let scene = scene(region.clone());
     let frame = frame(&region, 3, cracks);
     let meshes = post_frame(&scene, &frame, &options(&scene)).map_err(|e| e.to_string())?.parts.remove(0).1;
+    let crosses =
+        |(i, c): (usize, &Opened)| cracks[..i].iter().any(|d| find_crossing(&[&c.rest, &d.rest], false).is_some());
+    if cracks.iter().enumerate().any(crosses) {
+        // What they close off together may overlap.
+        return Ok(());
+    }
     let (found, expected) = (area(&meshes), brute_force_area(&frame));
     // Snapping moves each side by half a step (2⁻²⁰ m), filled slivers are two steps wide, the longest contours have
     // 200 m.

@@ -13,6 +13,7 @@ mod curve;
 #[cfg(feature = "load")]
 pub mod document;
 mod fault;
+mod fragments;
 mod frame;
 mod frame_check;
 mod infinite;
@@ -34,6 +35,7 @@ pub use fissure_plane::{Matrix, Point, Region, Vector};
 
 pub use curve::Curve;
 pub use fault::{Key, KeyPath, SceneFault, Warning};
+pub use fragments::{Boundary, BoundaryEdge, Fragment, Fragments, Line, RestCrack, RestRing};
 pub use frame::*;
 pub use frame_check::{FrameFault, FramePart};
 #[cfg(feature = "load")]

@@ -271,18 +271,6 @@ impl Division {
         }
     }
 
-    /// Whether a crack that `counts` parts two particles. One that lies exactly on a crack is a hair above it, as in a
-    /// pair with a node.
-    pub(crate) fn parts(&self, first: Point, second: Point, counts: impl Fn(u32) -> bool) -> bool {
-        let cracks = self.bucket(first).chunk_by(|s, t| s.0 == t.0);
-        let lines = cracks.map(|segments| (&self.lines[segments[0].0 as usize], segments));
-        lines.filter(|(line, _)| counts(line.crack)).any(|(line, segments)| {
-            let Meeting { side, at_node, .. } =
-                line.meeting(segments, first, second, |kind| kind != SegmentKind::AlongTrunk);
-            if at_node { side == Some(Side::Below) } else { side.is_some() }
-        })
-    }
-
     /// What the line from `particle` to `node` crosses.
     pub(crate) fn crossed(&self, particle: Point, node: Point) -> CrossedSet {
         if !self.is_near(particle) {

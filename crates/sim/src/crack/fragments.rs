@@ -1,70 +1,60 @@
 //! Which fragment each particle belongs to.
 
 use crate::crack::Crack;
-use crate::crack::division::{CrackLine, Division, LineEnd, TipCut};
+use crate::crack::cracks::ENDS;
 use crate::particles::Particles;
-use fissure_scene::{CrackEnd, End, TipDivision};
-use std::collections::HashMap;
+use fissure_scene::{Fragments, RestCrack, RestRing, Scene};
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BTreeSet};
 
-/// Splits the fragments in `numbers` (one number per particle) where the cracks, at rest, have cut neighbours apart. A
-/// fragment that splits keeps its number for the part with the first particle; the others get the next free numbers, in
-/// the order of their first particles.
-pub(crate) fn split(particles: &Particles, cracks: &[Crack], cell_size: f64, numbers: &mut [u32]) {
-    let s = particles.spacing;
-    // Neighbours are one spacing apart; an open end goes so far on that no pair slips past it.
-    let lines: Vec<CrackLine> = cracks
-        .iter()
-        .enumerate()
-        .map(|(i, c)| {
-            let end = |e: CrackEnd| if e == CrackEnd::Tip { LineEnd::Tip } else { LineEnd::Open(0.75 * s) };
-            CrackLine {
-                crack: i as u32,
-                points: c.points.clone(),
-                start: end(c.end(End::Start)),
-                end: end(c.end(End::End)),
-                trunk: Vec::new(),
-            }
-        })
+/// Splits the fragments in `numbers` (one number per particle) where the cracks, at rest, have cut a body through. A
+/// fragment that splits keeps its number for the part with the most particles (of equally many, with the first); the
+/// others get the next free numbers, in the order of their first particles. What is so small that it holds no particle
+/// is no fragment.
+pub(crate) fn split(scene: &Scene, particles: &Particles, cracks: &[Crack], numbers: &mut [u32]) {
+    let fragments = at_rest(scene, cracks);
+    let known: BTreeSet<u32> = numbers.iter().copied().collect();
+    if fragments.list().len() <= known.len() {
+        return;
+    }
+    let part_of = |p: usize| fragments.at(particles.body[p], particles.rest[p]);
+    // Each part of each fragment by its number and place: how many particles it has, and the first of them.
+    let parts: Vec<Option<usize>> = (0..particles.len()).map(part_of).collect();
+    let mut sizes = BTreeMap::<(u32, usize), (usize, usize)>::new();
+    for (p, (&number, &part)) in numbers.iter().zip(&parts).enumerate() {
+        // A particle on a ring may lie outside by rounding; it stays with the part that keeps the number.
+        if let Some(part) = part {
+            sizes.entry((number, part)).or_insert((0, p)).0 += 1;
+        }
+    }
+    let mut kept = BTreeMap::<u32, (usize, Reverse<usize>, usize)>::new();
+    for (&(number, part), &(count, first)) in &sizes {
+        let candidate = (count, Reverse(first), part);
+        kept.entry(number).and_modify(|best| *best = candidate.max(*best)).or_insert(candidate);
+    }
+    let mut others: Vec<(usize, (u32, usize))> =
+        sizes.iter().filter(|((number, part), _)| kept[number].2 != *part).map(|(key, size)| (size.1, *key)).collect();
+    others.sort_unstable();
+    let next = known.last().map_or(0, |last| last + 1);
+    let new: BTreeMap<(u32, usize), u32> = others.into_iter().map(|(_, key)| key).zip(next..).collect();
+    for (number, part) in numbers.iter_mut().zip(parts) {
+        let split_off = part.and_then(|part| new.get(&(*number, part)));
+        *number = split_off.copied().unwrap_or(*number);
+    }
+}
+
+/// The parts that the cracks cut the bodies of the scene into.
+fn at_rest(scene: &Scene, cracks: &[Crack]) -> Fragments {
+    let bodies = scene.bodies.iter().zip(0..);
+    let rings: Vec<RestRing<'_>> = bodies
+        .flat_map(|(body, number)| body.region.rings().map(move |points| RestRing { body: number, points }))
         .collect();
-    let division = Division::new(&lines, TipDivision::LineCrossing, TipCut::PLAIN, cell_size, s, s / cell_size);
-    let mut parent: Vec<usize> = (0..particles.len()).collect();
-    fn root(parent: &mut [usize], mut p: usize) -> usize {
-        while parent[p] != p {
-            parent[p] = parent[parent[p]];
-            p = parent[p];
-        }
-        p
-    }
-    for p in 0..particles.len() {
-        for step in [[1, 0], [0, 1]] {
-            let place = particles.place[p];
-            let Some(q) = particles.at([place[0] + step[0], place[1] + step[1]]) else { continue };
-            // A crack does not cut another body beside it.
-            let is_own = |crack: u32| cracks[crack as usize].body == particles.body[p];
-            let is_parted = division.parts(particles.rest[p], particles.rest[q], is_own);
-            if particles.body[p] == particles.body[q] && !is_parted {
-                let (a, b) = (root(&mut parent, p), root(&mut parent, q));
-                // The lower number is the root, so a fragment is known by its first particle.
-                parent[a.max(b)] = a.min(b);
-            }
-        }
-    }
-    let mut next = numbers.iter().max().map_or(0, |&m| m + 1);
-    let mut number: HashMap<(u32, usize), u32> = HashMap::new();
-    let mut kept: HashMap<u32, usize> = HashMap::new();
-    for p in 0..particles.len() {
-        let group = root(&mut parent, p);
-        let old = numbers[p];
-        let new = *number.entry((old, group)).or_insert_with(|| {
-            if *kept.entry(old).or_insert(group) == group {
-                old
-            } else {
-                next += 1;
-                next - 1
-            }
-        });
-        numbers[p] = new;
-    }
+    let cracks: Vec<RestCrack<'_>> = cracks
+        .iter()
+        .zip(0..)
+        .map(|(c, crack)| RestCrack { crack, body: c.body, points: &c.points, ends: ENDS.map(|end| c.end(end)) })
+        .collect();
+    Fragments::new(&rings, &cracks)
 }
 
 /// First numbers: one fragment per body.

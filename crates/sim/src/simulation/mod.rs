@@ -123,6 +123,6 @@ impl Simulation {
     }
 
     pub(super) fn split_fragments(&mut self) {
-        fragments::split(&self.particles, &self.state.cracks, self.scene.cell_size, &mut self.state.fragments);
+        fragments::split(&self.scene, &self.particles, &self.state.cracks, &mut self.state.fragments);
     }
 }

@@ -15,6 +15,10 @@ use serde::{Deserialize, Serialize};
 /// How far beside a crack the side of a face point is decided, in cells.
 const NUDGE: f64 = 1e-6;
 
+/// Where a crack ends on another one, how far beside it that is decided, as part of the way back along it: within the
+/// wedge between the two wherever they meet at more than 6°.
+const WEDGE: f64 = 0.1;
+
 impl Lattice {
     /// Probes of both faces of a crack.
     fn face_probes(&self, crack: &Crack) -> Faces {
@@ -25,7 +29,15 @@ impl Lattice {
     /// Probe of one face at point `k` of a crack.
     fn face_probe(&self, crack: &Crack, k: usize, side: Side) -> Probe {
         let outward = left_at(&crack.points, k) * side.sign();
-        self.probe(crack.body, crack.points[k], crack.points[k] + outward * (NUDGE * self.grid.cell_size))
+        let last = crack.points.len() - 1;
+        let is_junction = |end: End| matches!(crack.end(end), CrackEnd::Junction { .. });
+        // On the line of another crack: what is decided on lies on the side of that one where this crack is.
+        let toward = match k {
+            0 if is_junction(End::Start) => outward * WEDGE - crack.last_direction(End::Start),
+            _ if k == last && is_junction(End::End) => outward * WEDGE - crack.last_direction(End::End),
+            _ => outward,
+        };
+        self.probe(crack.body, crack.points[k], crack.points[k] + toward * (NUDGE * self.grid.cell_size))
     }
 }
 

@@ -1,0 +1,102 @@
+"""Holds the objects of each frame against the fragments of its take.
+
+    pip install numpy safetensors trimesh networkx scipy
+    python check_fragments.py OUT/NAME.take OUT
+
+Reads the GLB files of the part `cracked` in OUT. In every frame: one object per fragment of the take, with one name in
+all frames; each object watertight by itself, and of the same volume when trimesh merges its vertices as it does by
+default; the area of all objects that of the first frame times the mean det F of all particles within 1e-3.
+"""
+
+import json
+import pathlib
+import sys
+
+import numpy
+import trimesh
+from safetensors.numpy import load_file
+
+AREA = 1e-3
+VOLUME = 1e-6
+KINDS = {5125: "<u4", 5126: "<f4"}
+WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
+
+
+class Glb:
+    """The document of a GLB file, and its numbers as tables."""
+
+    def __init__(self, path):
+        data = path.read_bytes()
+        length = int.from_bytes(data[12:16], "little")
+        self.document = json.loads(data[20 : 20 + length])
+        self.binary = data[28 + length :]
+
+    def table(self, number):
+        accessor = self.document["accessors"][number]
+        view = self.document["bufferViews"][accessor["bufferView"]]
+        width = WIDTHS[accessor["type"]]
+        kind = KINDS[accessor["componentType"]]
+        return numpy.frombuffer(self.binary, kind, accessor["count"] * width, view["byteOffset"]).reshape(-1, width)
+
+    def objects(self):
+        """name, fragment, vertices and triangles of each object"""
+        for node in self.document["nodes"]:
+            if "mesh" not in node:
+                continue
+            vertices, faces, first = [], [], 0
+            for primitive in self.document["meshes"][node["mesh"]]["primitives"]:
+                vertices.append(self.table(primitive["attributes"]["POSITION"]).astype(float))
+                faces.append(self.table(primitive["indices"]).reshape(-1, 3).astype(int) + first)
+                first += len(vertices[-1])
+            yield node["name"], node["extras"]["piece"], numpy.concatenate(vertices), numpy.concatenate(faces)
+
+
+def check_solid(vertices, faces):
+    """Problems of one object, and its volume."""
+    # trimesh merges within 1e-8, whatever the size: the shortest side becomes 1.
+    scale = numpy.ptp(vertices, axis=0).min()
+    mesh = trimesh.Trimesh(vertices / scale, faces, process=True)
+    problems = [] if mesh.is_watertight and mesh.is_winding_consistent else ["not watertight"]
+    merged = mesh.copy()
+    merged.merge_vertices()
+    if not abs(merged.volume - mesh.volume) <= VOLUME * mesh.volume:
+        problems.append(f"{merged.volume / mesh.volume - 1:.1e} of its volume are lost when vertices are merged")
+    return problems, mesh.volume * scale**3
+
+
+def main(take, folder):
+    take, folder = pathlib.Path(take), pathlib.Path(folder)
+    records = json.loads((folder / "manifest.json").read_text())["files"]
+    records = [record for record in records if record["part"] == "cracked" and record["format"] == "glb"]
+    if not records:
+        sys.exit(f"{folder}: no GLB file of the part `cracked`")
+    names, first, worst, failures = {}, None, 0.0, 0
+    for record in records:
+        frame = load_file(take / f"frame.{record['frame']:04}.safetensors")
+        problems, found, volume = [], [], 0.0
+        for name, piece, vertices, faces in Glb(folder / record["file"]).objects():
+            wrong, part = check_solid(vertices, faces)
+            problems += [f"{name}: {problem}" for problem in wrong]
+            volume += part
+            found.append(piece)
+            if names.setdefault(piece, name) != name:
+                problems.append(f"{name} was {names[piece]}")
+        fragments = sorted(set(frame["particles.piece"].tolist()))
+        if sorted(found) != fragments:
+            problems.append(f"objects {sorted(found)}, fragments {fragments}")
+        area = volume / record["thickness"] / numpy.linalg.det(frame["particles.deformation_gradient"]).mean()
+        first = first or area
+        worst = max(worst, abs(area / first - 1))
+        if abs(area / first - 1) > AREA:
+            problems.append(f"area off by {area / first - 1:.1e}")
+        for problem in problems:
+            print(f"{record['file']}: {problem}", file=sys.stderr)
+        failures += bool(problems)
+    print(f"{len(records)} frames, {len(names)} fragments, area within {worst:.1e}: {failures} bad")
+    sys.exit(failures > 0)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit("usage: check_fragments.py TAKE FOLDER")
+    main(*sys.argv[1:])
