@@ -148,6 +148,9 @@ pub struct Crack {
     pub start_guide: Option<Guide>,
     /// Path that the tip at the last point follows, beginning at that tip.
     pub end_guide: Option<Guide>,
+    /// Whether its tips run across other cracks of the body instead of ending on them.
+    #[serde(default)]
+    pub crosses: bool,
 }
 
 impl Crack {
@@ -173,6 +176,52 @@ pub struct Guide {
     /// How far along the guide the tip may have come: (time [s], fraction of the guide's length 0 to 1), both rising.
     /// Empty: fracture mechanics decide when the crack grows.
     pub schedule: Curve,
+    /// What leaves it on its way, in the order in which it is passed.
+    #[serde(default)]
+    pub branches: Vec<GuideBranch>,
+}
+
+impl Guide {
+    /// Does the same to this guide and to all that branch off it, at any depth.
+    pub fn for_each_mut(&mut self, change: &mut impl FnMut(&mut Guide)) {
+        change(self);
+        for branch in &mut self.branches {
+            if let BranchKind::Begins { guide, .. } = &mut branch.kind {
+                guide.for_each_mut(change);
+            }
+        }
+    }
+}
+
+/// A crack that leaves a guide.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct GuideBranch {
+    /// Number of the point of the guide that it leaves at; never the first one.
+    pub point: usize,
+    /// What leaves there.
+    pub kind: BranchKind,
+}
+
+/// What leaves a guide.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BranchKind {
+    /// A crack that begins there when the tip on the guide has passed.
+    Begins {
+        /// Its own guide, from that point on.
+        guide: Guide,
+        /// Time from the passing on for which it waits [s].
+        delay: f64,
+        /// Whether the times of its schedule count from the passing on.
+        from_passing: bool,
+    },
+    /// A crack of the scene with an end there, which opens into the one that passes.
+    Drawn {
+        /// Index of the crack.
+        crack: usize,
+        /// Its end there, no live tip.
+        end: End,
+    },
 }
 
 /// A shape that selects points.

@@ -18,7 +18,7 @@ impl Scene {
         for crack in &mut scene.cracks {
             crack.name.clear();
             let guides = [&mut crack.start_guide, &mut crack.end_guide];
-            guides.into_iter().flatten().for_each(|guide| guide.name.clear());
+            guides.into_iter().flatten().for_each(|guide| guide.for_each_mut(&mut |guide| guide.name.clear()));
         }
         scene.frames.last = scene.frames.first;
         let OutputSettings { thickness, formats, parts, up, smallest_fragment } = &mut scene.output;

@@ -1,11 +1,11 @@
 //! What directs cracks: guides in time, speed, branching, other materials, painted toughness, flaws.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 mod common;
 
 use common::{Folder, PLATE, paint, scene_with};
 use fissure_plane::{Point, segment_distance};
-use fissure_scene::{Branching, LoadErrorKind, Scene, ToughnessKind, load, material_presets};
+use fissure_scene::{BranchKind, Branching, End, LoadErrorKind, Scene, ToughnessKind, load, material_presets};
 use png::{BitDepth, ColorType};
 
 fn plate(rest: &str) -> Scene {
@@ -31,6 +31,103 @@ fn keyframes_count_frames() {
     );
     let guide = scene.cracks[0].end_guide.as_ref().unwrap();
     assert_eq!((guide.strength, guide.schedule.points.len(), scene.growth.speed_curve.points.len()), (1.0, 0, 0));
+}
+
+/// Truth: at half the time a rise that is slow at first has come a quarter of its way, and one that is slow at last
+/// three quarters, in every list of keyframes; the way of a support is the sum of its speeds.
+#[test]
+fn every_list_of_keyframes_may_be_eased() {
+    let scene = plate(
+        "[[crack]]\nname = 'notch'\nline = [[-10, 0], [-5, 0]]\nguide = 'path'\n\
+         [[guide]]\nname = 'path'\nline = [[-5, 0], [10, 0]]\nkeyframes = [[1, 0], [41, 1]]\nease = 'in'\n\
+         [growth]\nspeed_keyframes = [[1, 0], [41, 1]]\nspeed_ease = 'out'\n\
+         [frames]\nrange = '1-48'\nrate = 100\n\
+         [[load]]\nforce = [1, 0]\ncurve = [[0, 0], [0.4, 1]]\nease = 'in'\n\
+         [[support]]\ndisplacement_x = 0.1\ncurve = [[0, 0], [0.4, 1]]\nease = 'out'\n\
+         [[collider]]\nshape = { disc = { center = [0, 30], radius = 1 } }\nease = 'in-out'\n\
+         keyframes = [{ time = 0 }, { time = 0.4, position = [0, -4], angle = 40 }]\n",
+    );
+    let guide = scene.cracks[0].end_guide.as_ref().unwrap();
+    assert_eq!([guide.schedule.value(0.2), scene.growth.speed_curve.value(0.2)], [0.25, 0.75]);
+    assert_eq!(scene.loads[0].curve.value(0.2), 0.25);
+    let support = &scene.supports[0];
+    let way = support.curve.mean(0.0, 0.2) * 0.2 * support.velocity[0].unwrap();
+    assert!((way - 0.075).abs() < 1e-6, "{way}");
+    let after = |time: f64| scene.colliders[0].keyframes.iter().find(|k| (k.0 - time).abs() < 1e-12).unwrap().1;
+    let [quarter, half] = [0.1, 0.2].map(after);
+    assert!((quarter.position.y - (30.0 - 4.0 * 0.15625)).abs() < 1e-12, "{quarter:?}");
+    assert!((half.position.y - 28.0).abs() < 1e-12 && (half.angle - 20_f64.to_radians()).abs() < 1e-12, "{half:?}");
+}
+
+/// A notch whose guide runs right along y = 0, with other guides and cracks.
+fn tree(rest: &str) -> Result<Scene, fissure_scene::LoadError> {
+    let trunk = "[grid]\nparticle_spacing = 0.2\n[frames]\nrange = '1-48'\nrate = 100\n\
+         [[crack]]\nname = 'notch'\nline = [[-10, 0], [-5, 0]]\nguide = 'trunk'\n\
+         [[guide]]\nname = 'trunk'\nline = [[-5, 0], [8, 0]]\nkeyframes = [[1, 0], [41, 1]]\n";
+    scene_with(&format!("{PLATE}{trunk}{rest}"), None, &[])
+}
+
+/// Truth: the drawing. A guide that nobody refers to, with either end on another one or a little beside it, leaves that
+/// one at a point that both have; so do branches of branches, and a crack opens where it ends on one.
+#[test]
+fn guides_that_begin_on_others_are_their_branches() {
+    for (line, beside) in [("[[2, 0.05], [4, 3]]", 0.0), ("[[4, 3], [2, -0.05]]", 0.0), ("[[2, 0], [4, 3]]", 0.0)] {
+        let rest = format!(
+            "[[guide]]\nname = 'side'\nline = {line}\ndelay = 2\nduration = 10\n\
+             [[guide]]\nname = 'twig'\nline = [[3, 1.5], [5, 1.5]]\nbranch_of = 'side'\n\
+             [[crack]]\nname = 'drawn'\nline = [[-1, 0.05], [-2, -3]]\n"
+        );
+        let scene = tree(&rest).unwrap();
+        let trunk = scene.cracks[0].end_guide.as_ref().unwrap();
+        let places: Vec<Point> = trunk.branches.iter().map(|branch| trunk.points[branch.point]).collect();
+        assert_eq!(places, [Point::new(-1.0, beside), Point::new(2.0, beside)]);
+        let BranchKind::Drawn { crack: 1, end: End::Start } = trunk.branches[0].kind else { panic!("{trunk:?}") };
+        let drawn = &scene.cracks[1];
+        assert_eq!((drawn.points[0], drawn.start_live, drawn.end_live), (places[0], false, true));
+        let BranchKind::Begins { guide: side, delay, from_passing } = &trunk.branches[1].kind else {
+            panic!("{trunk:?}")
+        };
+        assert_eq!((side.points[0], *delay, *from_passing), (places[1], 0.02, true));
+        assert_eq!(side.schedule.points, [(0.0, 0.0), (0.1, 1.0)]);
+        let [twig] = side.branches.as_slice() else { panic!("{side:?}") };
+        assert!((side.points[twig.point] - Point::new(3.0, 1.5)).norm() < 0.05, "{side:?}");
+    }
+}
+
+/// Truth: what is wrong, named with its line and a remedy.
+#[test]
+fn branches_that_lead_nowhere_are_refused() {
+    let side = |rest: &str| format!("[[guide]]\nname = 'side'\n{rest}\n");
+    for (rest, words) in [
+        (side("line = [[2, 1], [4, 3]]\nbranch_of = 'trunk'"), ["`side`", "1 m away"]),
+        (side("line = [[2, 0], [4, 3]]\nbranch_of = 'tronk'"), ["`tronk`", "did you mean `trunk`?"]),
+        (side("line = [[-5, 0], [4, 3]]\nbranch_of = 'trunk'"), ["`side`", "where that begins"]),
+        (side("line = [[2, 1], [4, 3]]\nduration = 3"), ["", ""]),
+        (side("line = [[2, 0], [4, 3]]\nduration = -3"), ["duration", "-3"]),
+        (side("line = [[2, 0], [4, 3]]\nduration = 3\nkeyframes = [[1, 0]]"), ["both `keyframes`", "`duration`"]),
+        (
+            format!(
+                "{}[[guide]]\nname = 'twig'\nline = [[3, 2], [4, 4]]\nbranch_of = 'side'\n",
+                side("line = [[3, 1], [3, 3]]")
+            ),
+            ["`twig`", "no crack follows"],
+        ),
+    ] {
+        match tree(&rest) {
+            Err(error) => {
+                assert!(words.iter().all(|word| !word.is_empty() && error.to_string().contains(word)), "{error}")
+            }
+            Ok(_) => assert_eq!(words, ["", ""], "{rest}"),
+        }
+    }
+    let own = plate_error(
+        "[[crack]]\nline = [[-10, 0], [-5, 0]]\nguide = 'g'\n[[guide]]\nname = 'g'\nline = [[-5, 0], [8, 0]]\ndelay = 1\n",
+    );
+    assert!(own.contains("`delay`") && own.contains("no branch"), "{own}");
+}
+
+fn plate_error(rest: &str) -> String {
+    scene_with(&format!("{PLATE}{rest}"), None, &[]).unwrap_err().to_string()
 }
 
 #[test]

@@ -83,6 +83,7 @@ pub(crate) fn add_crack(scene: &mut Scene, points: &[[f64; 2]]) {
         end_live: false,
         start_guide: None,
         end_guide: None,
+        crosses: false,
     });
 }
 

@@ -225,7 +225,7 @@ impl Placement {
     }
 
     fn place_guide(&self, guide: &mut Guide) {
-        guide.points = guide.points.iter().map(|&p| self.point(p)).collect();
+        guide.for_each_mut(&mut |guide| guide.points.iter_mut().for_each(|p| *p = self.point(*p)));
     }
 
     fn place_load(&self, load: &mut Load, scene: &Scene) {

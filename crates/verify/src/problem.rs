@@ -135,6 +135,7 @@ impl Problem {
             end_live: live[1],
             start_guide: None,
             end_guide: None,
+            crosses: false,
         });
         self
     }

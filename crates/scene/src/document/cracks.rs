@@ -1,7 +1,7 @@
 //! Cracks, guides and flaws of a scene file.
 
-use super::{Line, Shape};
-use crate::range::{DEGREES, DEGREES_APART, FLAW_DENSITY, FRAME, LENGTH, SPREAD, UNIT, pairs};
+use super::{Ease, Line, Shape};
+use crate::range::{DEGREES, DEGREES_APART, FLAW_DENSITY, FRAME, FRAMES_LONG, LENGTH, SPREAD, UNIT, pairs};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -25,6 +25,9 @@ pub struct CrackKeys {
     pub guide_start: Option<String>,
     /// Name of the guide that the tip at the last point of the line follows.
     pub guide_end: Option<String>,
+    /// Whether its tips, and those of its branches, run across other cracks. Default: false, they end on them.
+    #[serde(default)]
+    pub crosses: bool,
 }
 
 /// Ends of a crack that may grow.
@@ -50,6 +53,10 @@ impl Tips {
 }
 
 /// A drawn path for a crack tip. It begins at the tip, or runs along the crack first.
+///
+/// A guide that no crack refers to, with an end on another guide, is a branch of that one: a crack begins there when
+/// the tip on the other guide has passed. A crack with an end on a guide of strength 1 opens into the crack that
+/// passes.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GuideKeys {
@@ -62,10 +69,23 @@ pub struct GuideKeys {
     #[schemars(transform = UNIT.bounds())]
     pub strength: Option<f64>,
     /// When the crack is where: [[frame, fraction of the path's length, 0 to 1], ...], frames rising, fractions never
-    /// falling, linear between. Default: fracture mechanics decide when the crack grows.
+    /// falling. Default: fracture mechanics decide when the crack grows.
     #[serde(default)]
     #[schemars(transform = pairs(FRAME, UNIT))]
     pub keyframes: Vec<[f64; 2]>,
+    /// How the crack goes from one keyframe to the next: `linear` (default), `in` (slow at first), `out` (slow at last)
+    /// or `in-out`.
+    #[serde(default)]
+    pub ease: Ease,
+    /// Name of the guide that it is a branch of. Default: the one that one of its ends lies on.
+    pub branch_of: Option<String>,
+    /// Of a branch: frames for which it waits when the tip on the other guide has passed. Default: 0.
+    #[schemars(transform = FRAMES_LONG.bounds())]
+    pub delay: Option<f64>,
+    /// Of a branch without `keyframes`: frames in which it runs along its guide, as `ease` says. Default: fracture
+    /// mechanics decide.
+    #[schemars(transform = FRAMES_LONG.bounds())]
+    pub duration: Option<f64>,
 }
 
 /// Small straight cracks scattered at random: the same seed gives the same flaws on every machine. Give `density` or

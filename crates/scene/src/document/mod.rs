@@ -4,6 +4,7 @@
 //! JSON schema's descriptions.
 
 mod cracks;
+mod ease;
 mod geometry;
 mod matter;
 mod motion;
@@ -11,6 +12,7 @@ mod settings;
 mod switch;
 
 pub use cracks::*;
+pub use ease::Ease;
 pub use geometry::*;
 pub use matter::*;
 pub use motion::*;

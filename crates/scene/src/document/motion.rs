@@ -1,6 +1,6 @@
 //! What moves and holds the bodies of a scene file: colliders, loads, supports, velocities.
 
-use super::Shape;
+use super::{Ease, Shape};
 use crate::range::{
     ANGULAR_VELOCITY, COORDINATE, CURVE_FACTOR, DEGREES, FORCE, FRICTION, LENGTH, TIME, TRACTION, VELOCITY, pairs,
 };
@@ -24,9 +24,13 @@ pub struct ColliderKeys {
     #[serde(default)]
     #[schemars(transform = FRICTION.bounds())]
     pub friction: f64,
-    /// Motion: linear between keyframes, at rest before the first and after the last. Default: at rest.
+    /// Motion: at rest before the first keyframe and after the last. Default: at rest.
     #[serde(default)]
     pub keyframes: Vec<Keyframe>,
+    /// How it goes from one keyframe to the next: `linear` (default), `in` (slow at first), `out` (slow at last) or
+    /// `in-out`.
+    #[serde(default)]
+    pub ease: Ease,
 }
 
 /// Shape of a collider: one of these.
@@ -141,10 +145,14 @@ pub struct LoadKeys {
     pub traction: Option<[f64; 2]>,
     /// Forces on single particles.
     pub per_point: Option<Vec<PointForce>>,
-    /// Factor over time, [[time in s, factor], ...] with rising times, linear between. Default: always 1.
+    /// Factor over time, [[time in s, factor], ...] with rising times. Default: always 1.
     #[serde(default)]
     #[schemars(transform = pairs(TIME, CURVE_FACTOR))]
     pub curve: Vec<[f64; 2]>,
+    /// How the factor goes from one point of `curve` to the next: `linear` (default), `in` (slow at first), `out` (slow
+    /// at last) or `in-out`.
+    #[serde(default)]
+    pub ease: Ease,
 }
 
 /// A force on the particle nearest to a point.
@@ -181,11 +189,15 @@ pub struct SupportKeys {
     /// Displacement along y in m where the factor of `curve` is 1.
     #[schemars(transform = COORDINATE.bounds())]
     pub displacement_y: Option<f64>,
-    /// Factor on the velocity or displacement over time, [[time in s, factor], ...] with rising times, linear between.
-    /// Default: always 1; a displacement needs one, which begins at 0.
+    /// Factor on the velocity or displacement over time, [[time in s, factor], ...] with rising times. Default: always
+    /// 1; a displacement needs one, which begins at 0.
     #[serde(default)]
     #[schemars(transform = pairs(TIME, CURVE_FACTOR))]
     pub curve: Vec<[f64; 2]>,
+    /// How the factor goes from one point of `curve` to the next: `linear` (default), `in` (slow at first), `out` (slow
+    /// at last) or `in-out`.
+    #[serde(default)]
+    pub ease: Ease,
 }
 
 /// Directions that are held still.

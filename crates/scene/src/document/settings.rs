@@ -1,6 +1,6 @@
 //! Resolution, solver, growth, frames and output of a scene file.
 
-use super::Switch;
+use super::{Ease, Switch};
 use crate::range::{
     ACUTE, AREA, BENDING, CELLS, CRITICAL_COMPRESSION, CRITICAL_STRETCH, DAMPING, FRACTION, FRAME, FRAME_RATE,
     FRICTION, HARDENING, LENGTH, RELEASE_RATIO, SPEED_FACTOR, TIME_STEP, pairs,
@@ -150,9 +150,12 @@ pub struct GrowthKeys {
     /// Highest speed of a tip as a fraction of the Rayleigh wave speed, above 0 up to 1.
     #[schemars(transform = FRACTION.bounds())]
     pub speed_limit: Option<f64>,
-    /// Factor on `speed_limit` over time: [[frame, factor], ...] with rising frames, linear between; 0 holds all tips.
+    /// Factor on `speed_limit` over time: [[frame, factor], ...] with rising frames; 0 holds all tips.
     #[schemars(transform = pairs(FRAME, SPEED_FACTOR))]
     pub speed_keyframes: Vec<[f64; 2]>,
+    /// How that factor goes from one keyframe to the next: `linear` (default), `in` (slow at first), `out` (slow at
+    /// last) or `in-out`.
+    pub speed_ease: Ease,
     /// Whether tips divide into two. `false` (default), `true`, or values.
     pub branching: Option<Switch<BranchingKeys>>,
 }

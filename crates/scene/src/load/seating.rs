@@ -22,6 +22,13 @@ pub(crate) struct Seated {
     pub(crate) from: f64,
 }
 
+impl Seated {
+    /// Whether the first and the last point lie on the outline or on another crack.
+    pub(crate) fn opens(&self) -> [bool; 2] {
+        [0, 1].map(|end| self.mouths[end] || self.junctions[end])
+    }
+}
+
 /// The pieces of a drawn crack in the material of a body, in order: one, or several where it runs across holes or out
 /// and in again.
 ///
@@ -172,7 +179,7 @@ fn ahead_of_tip(guide: &[Point], tip: Point, crack: &[Point], tolerance: f64) ->
 }
 
 /// The piece of a polyline that is nearest to `point` (the first of several), and the place on it.
-fn nearest_on_polyline(line: &[Point], point: Point) -> (usize, Point) {
+pub(crate) fn nearest_on_polyline(line: &[Point], point: Point) -> (usize, Point) {
     let mut best = (0, line.first().copied().unwrap_or(point));
     for (piece, w) in line.windows(2).enumerate() {
         let on = nearest_on_segment(w[0], w[1], point);

@@ -77,6 +77,8 @@ pub(crate) const TIME_STEP: Range = within(1e-18, 1e6, "s");
 pub(crate) const FRAME_RATE: Range = within(1e-9, 1e15, "frames per second");
 /// A frame that a keyframe names; it may lie outside of the frames that are written.
 pub(crate) const FRAME: Range = up_to(1e9, "");
+/// So many frames long.
+pub(crate) const FRAMES_LONG: Range = not_negative(1e9, "frames");
 /// A damping rate.
 pub(crate) const DAMPING: Range = not_negative(1e15, "1/s");
 

@@ -5,8 +5,9 @@ use super::name::unique_name;
 use super::region::is_on;
 use crate::fault::Check;
 use crate::fault::{KeyPath, SceneFault, show};
-use crate::range::{COORDINATE, POINTS, UNIT};
-use crate::scene::{Body, Crack, Scene};
+use crate::frame::End;
+use crate::range::{COORDINATE, POINTS, TIME, UNIT};
+use crate::scene::{Body, BranchKind, Crack, Guide, Scene};
 use fissure_plane::{Point, Region, find_crossing, nearest_on_segment, orientation, polyline_length, segments_touch};
 
 impl Scene {
@@ -72,14 +73,12 @@ impl Scene {
                 let message = format!("guide `{}` leads the {end} of crack `{name}`, which is no live tip", guide.name);
                 return Err(SceneFault::new(key, message, "name that end in `tips`, or take the guide away"));
             }
-            validate_polyline(&key, &format!("guide `{}`", guide.name), &guide.points)?;
             if guide.points.first() != Some(&point) {
                 let message =
                     format!("guide `{}` does not start at the {end} {} m of crack `{name}`", guide.name, show(point));
                 return Err(SceneFault::new(key, message, "make its first point the tip"));
             }
-            validate_strength(&key, &guide.name, guide.strength)?;
-            validate_schedule(&key.then("keyframes"), &guide.name, Clock::Seconds, &guide.schedule.points)?;
+            self.validate_guide(&key, guide, 0)?;
         }
         if let Some(at) = leaves(&body.region, &crack.points) {
             let message = format!("crack `{name}` leaves body `{}` at {} m", body.name, show(at));
@@ -92,6 +91,46 @@ impl Scene {
         Ok(())
     }
 }
+
+impl Scene {
+    /// A guide and what branches off it, `generation` steps below the one that a tip of the drawing follows.
+    fn validate_guide(&self, path: &KeyPath, guide: &Guide, generation: usize) -> Check {
+        let name = &guide.name;
+        validate_polyline(path, &format!("guide `{name}`"), &guide.points)?;
+        validate_strength(path, name, guide.strength)?;
+        validate_schedule(&path.then("keyframes"), name, Clock::Seconds, &guide.schedule.points)?;
+        for branch in &guide.branches {
+            let place = guide.points.get(branch.point).copied().filter(|_| branch.point > 0);
+            let begins = match &branch.kind {
+                BranchKind::Begins { guide, delay, .. } => {
+                    TIME.check(path.then("delay"), &format!("the delay of guide `{}`", guide.name), *delay)?;
+                    if generation == MOST_GENERATIONS {
+                        let message = format!("guide `{}` is too many branches of branches away", guide.name);
+                        return Err(SceneFault::new(path.clone(), message, "let it be one of an earlier guide"));
+                    }
+                    self.validate_guide(path, guide, generation + 1)?;
+                    guide.points.first().copied()
+                }
+                BranchKind::Drawn { crack, end } => self.cracks.get(*crack).and_then(|crack| match end {
+                    End::Start => crack.points.first().copied().filter(|_| !crack.start_live),
+                    End::End => crack.points.last().copied().filter(|_| !crack.end_live),
+                }),
+            };
+            if place.is_none() || place != begins {
+                let message = format!("what branches off guide `{name}` does not begin at point {}", branch.point);
+                return Err(SceneFault::new(
+                    path.clone(),
+                    message,
+                    "let it begin at a point of the guide, not the first",
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Most guides that may follow each other as branches of branches.
+pub(crate) const MOST_GENERATIONS: usize = 16;
 
 /// The strength of a guide.
 pub(crate) fn validate_strength(path: &KeyPath, guide: &str, strength: f64) -> Check {

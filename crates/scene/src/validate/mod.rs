@@ -13,7 +13,7 @@ pub(crate) use cracks::leaves;
 // What is checked while it is read, where the file still says what was meant.
 #[cfg(feature = "load")]
 pub(crate) use {
-    cracks::{no_tip, validate_strength},
+    cracks::{MOST_GENERATIONS, no_tip, validate_strength},
     curve::{Clock, validate_curve, validate_schedule, validate_speed},
     region::{overlap, validate_region},
     toughness::{outside, validate_corners},

@@ -31,6 +31,8 @@ pub(crate) struct Crack {
     ways: [Way; 2],
     /// The tips at the first and the last point; none where the drawing has no live tip.
     tips: [Option<Tip>; 2],
+    /// Whether its tips run across other cracks.
+    pub(crate) crosses: bool,
 }
 
 /// How an end of a crack is on its way through an increment.
@@ -118,7 +120,8 @@ impl Crack {
         };
         let ends = [end_at(crack.points[0]), end_at(crack.points[crack.points.len() - 1])];
         let tip = |end: End, live: bool| {
-            (live && ends[slot(end)] == CrackEnd::Tip).then(|| Tip::new(crack.guide(end).map(GuideWalk::new)))
+            (live && ends[slot(end)] == CrackEnd::Tip)
+                .then(|| Tip::new(crack.guide(end).map(|guide| GuideWalk::new(guide, 0.0))))
         };
         Self {
             body: crack.body as u32,
@@ -126,13 +129,15 @@ impl Crack {
             ends,
             ways: [Way::default(); 2],
             tips: [tip(End::Start, crack.start_live), tip(End::End, crack.end_live)],
+            crosses: crack.crosses,
         }
     }
 
-    /// A branch of the crack `trunk` that begins at it, with a tip at its end.
-    pub(crate) fn branch(trunk: usize, body: u32, points: Vec<Point>, tip: Tip) -> Self {
-        let ends = [CrackEnd::Junction { crack: trunk as u32 }, CrackEnd::Tip];
-        Self { body, points, ends, ways: [Way::default(); 2], tips: [None, Some(tip)] }
+    /// A branch of this crack, which has the number `number`, that begins at it, with a tip at its end.
+    pub(crate) fn branch(&self, number: usize, points: Vec<Point>, tip: Tip) -> Self {
+        let ends = [CrackEnd::Junction { crack: number as u32 }, CrackEnd::Tip];
+        let (body, crosses) = (self.body, self.crosses);
+        Self { body, points, ends, ways: [Way::default(); 2], tips: [None, Some(tip)], crosses }
     }
 
     /// The tip at an end; none where the drawing has no live tip.
@@ -178,7 +183,7 @@ impl Crack {
         saved::below("the end of a crack", self.ends.iter().filter_map(trunk), count)?;
         let mut places = self.ways.iter().flat_map(|way| way.cut_at.iter().chain(&way.target));
         saved::ensure(places.all(is_inside), "the place of a tip")?;
-        self.tips.iter().flatten().try_for_each(Tip::check)
+        self.tips.iter().flatten().try_for_each(|tip| tip.check(count))
     }
 
     /// The points as lines were last cut for them. A tip on its way through an increment is where it was at the
@@ -201,6 +206,20 @@ impl Crack {
             End::Start => self.points[0],
             End::End => self.points[self.points.len() - 1],
         }
+    }
+
+    /// The last points at an end, from it backwards, at most so many.
+    pub(crate) fn last_points(&self, end: End, count: usize) -> Vec<Point> {
+        match end {
+            End::Start => self.points.iter().take(count).copied().collect(),
+            End::End => self.points.iter().rev().take(count).copied().collect(),
+        }
+    }
+
+    /// The last point at an end that stays where it is [m]: that of the end itself between increments.
+    pub(crate) fn fixed_point(&self, end: End) -> Point {
+        let on_its_way = usize::from(self.ways[slot(end)].target.is_some());
+        self.points[if end == End::Start { on_its_way } else { self.points.len() - 1 - on_its_way }]
     }
 
     /// Unit vector of the last segment at rest, pointing ahead of the end.

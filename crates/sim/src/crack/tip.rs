@@ -104,11 +104,11 @@ impl Tip {
         twin
     }
 
-    /// Checks a tip that was read.
+    /// Checks a tip that was read, in a run with so many `cracks`.
     ///
     /// # Errors
     /// [`SimulationError::BadState`]
-    pub(super) fn check(&self) -> Fits {
+    pub(super) fn check(&self, cracks: usize) -> Fits {
         let m = &self.assessment;
         let what = "a tip";
         saved::finite(
@@ -120,7 +120,7 @@ impl Tip {
         saved::finite(what, &self.heading)?;
         // Infinite before the tip has divided.
         saved::ensure(!self.since_division.is_nan(), "the division of a tip")?;
-        self.guide.as_ref().map_or(Ok(()), GuideWalk::check)
+        self.guide.as_ref().map_or(Ok(()), |guide| guide.check(cracks))
     }
 
     /// Counts growth by `length` [m].

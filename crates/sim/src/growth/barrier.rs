@@ -47,8 +47,11 @@ pub(super) fn first_barrier(cracks: &Cracks, id: TipId, region: &Region, from: P
             consider(ring[i], ring[(i + 1) % ring.len()], CrackEnd::Mouth);
         }
     }
+    let own = cracks.of(id);
+    let guide = cracks.tip(id).and_then(|tip| tip.guide.as_ref());
     for (other, crack) in cracks.iter().enumerate() {
-        if crack.body != cracks.of(id).body {
+        let is_passed = other != id.crack && (own.crosses || guide.is_some_and(|guide| guide.will_join(other)));
+        if crack.body != own.body || is_passed {
             continue;
         }
         let n = crack.points.len();
@@ -61,6 +64,11 @@ pub(super) fn first_barrier(cracks: &Cracks, id: TipId, region: &Region, from: P
         }
     }
     nearest.map(|n| n.1)
+}
+
+/// Whether nothing is on the way from `from`, on the crack of the tip `id`, to `to`, but what begins at `from`.
+pub(crate) fn is_free(cracks: &Cracks, id: TipId, region: &Region, from: Point, to: Point) -> bool {
+    first_barrier(cracks, id, region, from, to).is_none()
 }
 
 /// The place to end for a tip beside another crack, or beside an older part of its own, nearer than a last ligament;
@@ -82,6 +90,9 @@ pub(super) fn beside(cracks: &Cracks, id: TipId, toward: Vector, h: f64) -> Opti
         ENDS.into_iter().any(|end| met(end) && c.end(end) == CrackEnd::Junction { crack: id.crack as u32 })
     };
     for (other, line) in cracks.iter().enumerate().filter(|(_, c)| c.body == crack.body && !ended_here(c)) {
+        if crack.crosses && other != id.crack {
+            continue;
+        }
         if !has_parted && other != id.crack && is_twin(other, line) {
             continue;
         }
@@ -106,10 +117,10 @@ pub(super) fn beside(cracks: &Cracks, id: TipId, toward: Vector, h: f64) -> Opti
     nearest.map(|n| n.1)
 }
 
-/// Where the way from `p` to `q` meets the segment `a`–`b`: (fraction of the way, place), the start of the way left
-/// out.
+/// Where the way from `p` to `q` meets the segment `a`–`b`: (fraction of the way, place). What it stands on at its
+/// start it leaves; that is asked exactly, because it may begin a hair before what is in its way.
 fn intersection(p: Point, q: Point, a: Point, b: Point) -> Option<(f64, Point)> {
-    if p == q || !segments_touch(p, q, a, b) {
+    if p == q || !segments_touch(p, q, a, b) || segments_touch(p, p, a, b) {
         return None;
     }
     let (at_a, at_b) = (orientation(p, q, a), orientation(p, q, b));
@@ -122,5 +133,5 @@ fn intersection(p: Point, q: Point, a: Point, b: Point) -> Option<(f64, Point)> 
     };
     let way = q - p;
     let t = (at - p).dot(&way) / way.norm_squared();
-    (t > 1e-9).then_some((t, at))
+    Some((t, at))
 }

@@ -27,25 +27,22 @@ pub(crate) fn next_increment(
     }
     if let Some(guide) = tip.guide.as_ref().filter(|g| g.strength() >= 1.0) {
         // Along the guide, looking a ligament ahead.
-        let (target, ended) = guide.ahead(step);
-        let mut points = vec![target];
-        let mut last = from;
+        let target = guide.after(guide.here(from), step);
         let pieces = (LAST_LIGAMENT / scene.growth.increment).ceil() as usize;
-        for piece in 1..=pieces + 1 {
-            let (next, _) = guide.ahead(step * piece as f64);
-            if let Some(hit) = first_barrier(cracks, id, region, last, next) {
-                points.truncate(0);
-                points.extend((1..piece).map(|k| guide.ahead(step * k as f64).0));
+        let mut points = Vec::new();
+        let (mut last, mut next) = (from, target);
+        for _ in 0..=pieces {
+            if let Some(hit) = first_barrier(cracks, id, region, last, next.at) {
                 return Some(hit.finish(points, from));
             }
-            last = next;
+            points.push(next.at);
+            (last, next) = (next.at, guide.after(next, step));
         }
-        if (target - from).norm() <= 1e-9 * h {
+        if (target.at - from).norm() <= 1e-9 * h {
             return Some(Advance { points: Vec::new(), end: CrackEnd::Tip, state: TipState::GuideEnded });
         }
-        points.dedup();
-        let state = if ended { TipState::GuideEnded } else { TipState::Growing };
-        return Some(Advance { points, end: CrackEnd::Tip, state });
+        let state = if target.is_end { TipState::GuideEnded } else { TipState::Growing };
+        return Some(Advance { points: vec![target.at], end: CrackEnd::Tip, state });
     }
     let toward = way(cracks, id, assessed, scene);
     if let Some(hit) = first_barrier(cracks, id, region, from, from + toward * (step + LAST_LIGAMENT * h)) {

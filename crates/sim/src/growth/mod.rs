@@ -18,6 +18,7 @@ mod seeking;
 mod speed;
 
 pub(crate) use advance::Advance;
+pub(crate) use barrier::is_free;
 pub(crate) use branching::branches;
 pub(crate) use heading::heading;
 pub(crate) use increment::next_increment;

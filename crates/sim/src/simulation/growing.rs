@@ -2,7 +2,6 @@
 
 use super::Simulation;
 use crate::SimulationError;
-use crate::crack::Crack;
 use crate::crack::assessment::Assessment;
 use crate::crack::cracks::TipId;
 use crate::growth::{self, Advance};
@@ -106,6 +105,7 @@ impl Simulation {
         let time = state.time + time_step;
         let tips = live.iter().zip(assessed).map(|(&id, assessed)| self.ready(id, assessed, time, time_step)).collect();
         self.grow(tips, time);
+        self.branch_off(time);
         Ok(())
     }
 
@@ -296,7 +296,7 @@ impl Simulation {
         // The first length of both together releases what one straight on would have.
         let length = cracks.grow(id, &left);
         let Some(twin) = cracks.tip_mut(id).map(|tip| tip.divide(length)) else { return Vec::new() };
-        let new = cracks.add(Crack::branch(id.crack, cracks.of(id).body, points, twin));
+        let new = cracks.add(cracks.of(id).branch(id.crack, points, twin));
         self.book_leap(id, assessed, length);
         vec![id, TipId::new(new, End::End)]
     }

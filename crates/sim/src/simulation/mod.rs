@@ -2,6 +2,7 @@
 
 mod account;
 mod advance;
+mod branching_off;
 mod counts;
 mod estimate;
 #[cfg(test)]
@@ -23,6 +24,7 @@ use crate::material::elastic::Elastic;
 use crate::particles::Particles;
 use crate::solver::Solver;
 use crate::{SimulationError, foresight, memory};
+use branching_off::WaitingBranch;
 use fissure_scene::{Formulation, Scene};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -48,6 +50,8 @@ struct RunState {
     time: f64,
     steps: u64,
     cracks: Cracks,
+    /// Branches of guides that tips have passed, and that have not begun yet.
+    waiting: Vec<WaitingBranch>,
     /// ∫ G da [J/m].
     crack_energy: f64,
     /// Kinetic and strain energy at the beginning [J/m].
@@ -103,6 +107,7 @@ impl Simulation {
                 time: 0.0,
                 steps: 0,
                 cracks,
+                waiting: Vec::new(),
                 crack_energy: 0.0,
                 first_energy: 0.0,
                 most_work: 0.0,

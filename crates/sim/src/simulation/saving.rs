@@ -34,6 +34,7 @@ impl RunState {
         // Fragments only split, each into ones with particles of their own.
         saved::below("a particle", self.fragments.iter().copied(), particles)?;
         saved::ensure(self.cracks.len() >= scene.cracks.len(), "its number of cracks")?;
+        self.waiting.iter().try_for_each(|branch| branch.check(&self.cracks))?;
         self.cracks.iter().try_for_each(|crack| crack.check(scene, self.cracks.len()))
     }
 }

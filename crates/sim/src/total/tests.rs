@@ -3,7 +3,6 @@
 
 use super::field_vectors::FieldVectors;
 use super::{Total, internal_forces};
-use crate::crack::Crack;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::tip::Tip;
 use crate::particles::Particles;
@@ -212,7 +211,7 @@ fn mirrored_branches_are_cut_alike() {
     let branch = |sign: f64| (1..=16).map(move |k| from + Vector::new(0.89, sign * 0.45) * (0.25 * h * f64::from(k)));
     cracks.grow(TIP, &branch(1.0).collect::<Vec<_>>());
     let points = [from].into_iter().chain(branch(-1.0)).collect();
-    let new = cracks.add(Crack::branch(0, 0, points, Tip::new(None)));
+    let new = cracks.add(cracks[0].branch(0, points, Tip::new(None)));
     total.recut(&cracks, &[TIP, TipId::new(new, End::End)]);
     is_mirrored(&total, "cut");
     run(&mut total, &cracks, 1);

@@ -85,13 +85,14 @@ pub(crate) fn add_crack(scene: &mut Scene, points: &[[f64; 2]]) {
         end_live: true,
         start_guide: None,
         end_guide: None,
+        crosses: false,
     });
 }
 
 /// A path to follow through `points` [m].
 pub(crate) fn guide(points: &[[f64; 2]]) -> Guide {
     let points = points.iter().map(|&p| Point::from(p)).collect();
-    Guide { name: "guide".into(), points, strength: 1.0, schedule: Curve::default() }
+    Guide { name: "guide".into(), points, strength: 1.0, schedule: Curve::default(), branches: Vec::new() }
 }
 
 /// Adds a traction [Pa] on a side of the box.

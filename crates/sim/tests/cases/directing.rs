@@ -2,7 +2,8 @@
 
 use crate::common::{add_crack, plate, pull, rectangle, run};
 use fissure_scene::{
-    Branching, Curve, Frame, Guide, Inclusion, Point, Region, Scene, TipState, ToughnessKind, ToughnessPatch, Vector,
+    BranchKind, Branching, CrackEnd, Curve, End, Frame, Guide, GuideBranch, Inclusion, Point, Region, Scene, TipState,
+    ToughnessKind, ToughnessPatch, Vector,
 };
 use fissure_sim::{Elastic, Simulation};
 
@@ -27,6 +28,7 @@ fn guide(strength: f64, schedule: &[(f64, f64)]) -> Guide {
         points: vec![Point::from(TIP), Point::new(10.03, 16.03)],
         strength,
         schedule: Curve { points: schedule.to_vec() },
+        branches: Vec::new(),
     }
 }
 
@@ -78,6 +80,78 @@ fn a_schedule_says_when() {
         (simulation.frame().tips[0].length - (TIP[0] - MOUTH[0]) - 0.5 * length).abs() < 1e-6,
         "ends where it says"
     );
+}
+
+/// Truth: the drawing and the schedules. A branch begins at the point of its guide, as its trunk has passed, and is as
+/// long as its own schedule says, to within an increment; a crack that is drawn to the guide opens into the trunk; and
+/// the mirror image does the same.
+#[test]
+fn branches_begin_where_and_when_their_guides_say() {
+    for up in [1.0, -1.0] {
+        let mut scene = pulled();
+        scene.loads.clear();
+        let frame = 1.0 / scene.frames.rate;
+        let from = Point::from(TIP);
+        let place = |along: f64| from + Vector::new(along, 0.0);
+        add_crack(&mut scene, &[[TIP[0] + 2.1, TIP[1]], [TIP[0] + 3.1, TIP[1] - 2.0 * up]]);
+        scene.cracks[1].start_live = false;
+        scene.cracks[1].end_live = false;
+        let path = |points: Vec<Point>, schedule: &[(f64, f64)], branches| Guide {
+            name: "path".into(),
+            points,
+            strength: 1.0,
+            schedule: Curve { points: schedule.to_vec() },
+            branches,
+        };
+        let rise = [(0.0, 0.0), (8.0 * frame, 1.0)];
+        let side = path(vec![place(5.0), place(8.0) + Vector::new(0.0, 4.0 * up)], &rise, Vec::new());
+        let drawn = GuideBranch { point: 1, kind: BranchKind::Drawn { crack: 1, end: End::Start } };
+        let kind = BranchKind::Begins { guide: side, delay: 2.0 * frame, from_passing: true };
+        let points = vec![place(0.0), place(2.1), place(5.0), place(9.0)];
+        let schedule = [(frame, 0.0), (10.0 * frame, 1.0)];
+        scene.cracks[0].end_guide = Some(path(points, &schedule, vec![drawn, GuideBranch { point: 2, kind }]));
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let increment = scene.growth.increment * scene.cell_size;
+        let passed = 6.0;
+        for number in 1..=18 {
+            let now = run(&mut simulation, 1).unwrap();
+            let at = f64::from(number);
+            let asked = 5.0 * ((at - passed - 2.0) / 8.0).clamp(0.0, 1.0);
+            let grown = now.tips.iter().find(|tip| tip.crack == 2).map_or(0.0, |tip| tip.length);
+            assert!((grown - asked).abs() <= 2.0 * increment, "frame {number}: {grown} instead of {asked}");
+            let joins = if at < 1.0 + 9.0 * 2.1 / 9.0 { CrackEnd::Tip } else { CrackEnd::Junction { crack: 0 } };
+            if (at - 3.1).abs() > 0.5 {
+                assert_eq!(now.cracks[1].start, joins, "frame {number}");
+            }
+        }
+        let last = simulation.frame();
+        assert_eq!((last.cracks[2].rest[0], last.cracks[2].start), (place(5.0), CrackEnd::Junction { crack: 0 }));
+        assert!(last.cracks[0].rest.contains(&place(5.0)) && last.cracks[0].rest.contains(&place(2.1)));
+    }
+}
+
+/// Truth: counting. A crack that runs across one from edge to edge leaves four pieces, wherever they meet; without
+/// being told to it ends there, and there are three.
+#[test]
+fn a_crack_runs_across_another_when_it_is_told_to() {
+    for (shift, lean) in [(0.0, 0.0), (0.13, 0.4), (0.25, -0.3), (0.5, 0.1)] {
+        for crosses in [true, false] {
+            let mut scene = plate([6.0, 6.0], 0.5, 4e-3);
+            add_crack(&mut scene, &[[3.0 + shift - lean, 0.0], [3.0 + shift + lean, 6.0]]);
+            add_crack(&mut scene, &[[0.0, 3.03], [1.0, 3.03]]);
+            let frame = 1.0 / scene.frames.rate;
+            let points = vec![Point::new(1.0, 3.03), Point::new(6.5, 3.03)];
+            let schedule = Curve { points: vec![(0.0, 0.0), (4.0 * frame, 1.0)] };
+            scene.cracks[1].end_guide =
+                Some(Guide { name: "path".into(), points, strength: 1.0, schedule, branches: Vec::new() });
+            scene.cracks[1].crosses = crosses;
+            let mut simulation = Simulation::new(&scene).unwrap();
+            let mut fragments = run(&mut simulation, 6).unwrap().particles.piece.clone();
+            fragments.sort_unstable();
+            fragments.dedup();
+            assert_eq!(fragments.len(), if crosses { 4 } else { 3 }, "shift {shift}, lean {lean}");
+        }
+    }
 }
 
 /// Truth: the limits themselves. Averaged over a frame a tip never runs faster than the scene or the material lets it.

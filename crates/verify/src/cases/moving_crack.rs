@@ -41,6 +41,7 @@ fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationErr
         points: vec![Point::new(LENGTH, HEIGHT), Point::new(LENGTH + length, HEIGHT)],
         strength: 1.0,
         schedule: Curve { points: vec![(START * arrival, 0.0), ((END + 0.1) * arrival, 1.0)] },
+        branches: Vec::new(),
     });
     let mut placed = tally.set_up(&problem)?;
     // Until waves have crossed the domain and come back.

@@ -3,6 +3,7 @@
 use super::pull::Pull;
 use super::sketch::Sketch;
 use crate::load::drawing::LoadedDrawing;
+use crate::load::resolve::GUIDE_TOLERANCE;
 use crate::load::seating::Complaint;
 use crate::load::split::{Piece, pieces_inside};
 use crate::scene::Material;
@@ -29,8 +30,8 @@ const OVERSHOOT: f64 = 0.01;
 pub(super) struct Layout {
     /// A notch that starts a crack where nobody has drawn one.
     pub(super) notch: Option<[Point; 2]>,
-    /// Of each guide: the crack and the key that gives it to one of its tips.
-    pub(super) guided: Vec<(usize, &'static str)>,
+    /// Of each guide: the crack and the key that gives it to one of its tips; none of one that branches off another.
+    pub(super) guided: Vec<Option<(usize, &'static str)>>,
     /// One pull for each body, or part of it, with a crack.
     pub(super) pulls: Vec<Pull>,
     /// Distance between particles [m].
@@ -75,13 +76,16 @@ impl Layout {
             shortest = pieces.iter().map(|piece| polyline_length(&piece.points)).fold(shortest, f64::min);
             pulls.extend(longest_piece(pieces.into_iter()).map(|longest| Pull::across(&longest, region, material)));
         }
-        let tip = |guide: &Vec<Point>| nearest_tip(guide, &drawn_or_notch, &regions);
-        Ok(Self {
-            notch,
-            guided: guides.iter().map(tip).collect(),
-            pulls,
-            particle_spacing: (side / PARTICLES).min(shortest / PARTICLES_OF_A_CRACK).max(side / MOST_PARTICLES),
-        })
+        let particle_spacing = (side / PARTICLES).min(shortest / PARTICLES_OF_A_CRACK).max(side / MOST_PARTICLES);
+        let tip = |k: usize| {
+            let nearest = nearest_tip(&guides[k], &drawn_or_notch, &regions);
+            let is_near = |distance: f64| distance <= GUIDE_TOLERANCE * particle_spacing;
+            let branches = !is_near(nearest.0)
+                && (0..guides.len()).any(|of| of != k && branches_off(&guides[k], &guides[of], is_near));
+            (!branches).then_some((nearest.1, nearest.2))
+        };
+        let guided = (0..guides.len()).map(tip).collect();
+        Ok(Self { notch, guided, pulls, particle_spacing })
     }
 }
 
@@ -104,16 +108,25 @@ fn notch(regions: &[Region]) -> Result<[Point; 2], Complaint> {
     found.ok_or_else(|| ("the body has no place for a crack".into(), "draw an open line called `crack`".into()))
 }
 
-/// The crack whose tip is nearest to a guide, and the key that gives the guide to it.
-fn nearest_tip(guide: &[Point], cracks: &[Vec<Point>], regions: &[Region]) -> (usize, &'static str) {
-    let distance = |tip: Point| {
-        let places = guide.windows(2).map(|w| (nearest_on_segment(w[0], w[1], tip) - tip).norm());
-        places.fold(f64::INFINITY, f64::min)
-    };
+/// Whether a guide has an end on another one, whose own ends are not there.
+fn branches_off(guide: &[Point], trunk: &[Point], is_near: impl Fn(f64) -> bool) -> bool {
+    let ends = |line: &[Point]| [line.first().copied(), line.last().copied()].into_iter().flatten();
+    ends(guide).any(|end| is_near(distance(trunk, end)) && !ends(trunk).any(|other| is_near((other - end).norm())))
+}
+
+/// Distance of a point from a line [m].
+fn distance(line: &[Point], point: Point) -> f64 {
+    let places = line.windows(2).map(|w| (nearest_on_segment(w[0], w[1], point) - point).norm());
+    places.fold(f64::INFINITY, f64::min)
+}
+
+/// The crack whose tip is nearest to a guide, after the distance [m], and the key that gives the guide to it.
+fn nearest_tip(guide: &[Point], cracks: &[Vec<Point>], regions: &[Region]) -> (f64, usize, &'static str) {
+    let distance = |tip: Point| distance(guide, tip);
     let ends = |line: &[Point]| Some((*line.first()?, *line.last()?));
     let tips = cracks.iter().enumerate().filter_map(|(k, line)| Some((k, ends(line)?)));
     let tips = tips.flat_map(|(k, (first, last))| [(k, "guide_start", first), (k, "guide_end", last)]);
     let inside = tips.filter(|(_, _, tip)| regions.iter().any(|region| region.contains(*tip)));
     let nearest = inside.min_by(|a, b| distance(a.2).total_cmp(&distance(b.2)));
-    nearest.map_or((0, "guide_end"), |(k, key, _)| (k, key))
+    nearest.map_or((f64::INFINITY, 0, "guide_end"), |(k, key, tip)| (distance(tip), k, key))
 }

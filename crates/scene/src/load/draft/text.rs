@@ -9,6 +9,8 @@ use std::fmt::Write;
 
 /// Frames of the sequence.
 const FRAMES: u32 = 60;
+/// Frames that a crack takes which branches off another.
+const BRANCH: u32 = 10;
 
 /// The scene file, with comments for whoever goes on from here. The scene refers to its drawing by `reference`.
 pub(super) fn scene_file(sketch: &Sketch, layout: &Layout, reference: &str, options: &DraftOptions) -> String {
@@ -65,14 +67,19 @@ fn cracks(text: &mut String, sketch: &Sketch, layout: &Layout) {
     let lines: Vec<String> = lines.chain(notch).collect();
     for (index, (line, name)) in lines.iter().zip(names("crack", lines.len())).enumerate() {
         let _ = writeln!(text, "\n[[crack]]\nname = \"{name}\"\n{line}");
-        for ((crack, key), guide) in layout.guided.iter().zip(&guides) {
-            if *crack == index {
+        for (guided, guide) in layout.guided.iter().zip(&guides) {
+            if let Some((crack, key)) = guided
+                && *crack == index
+            {
                 let _ = writeln!(text, "{key} = \"{guide}\"");
             }
         }
     }
-    for (id, name) in sketch.guides.iter().zip(&guides) {
+    for ((id, name), guided) in sketch.guides.iter().zip(&guides).zip(&layout.guided) {
         let _ = writeln!(text, "\n[[guide]]\nname = \"{name}\"\nline = {{ svg = {} }}", quoted(id));
+        if guided.is_none() {
+            let _ = writeln!(text, "duration = {BRANCH}   # frames it takes when the other guide's crack has passed");
+        }
     }
 }
 

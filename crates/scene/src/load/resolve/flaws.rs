@@ -53,6 +53,7 @@ impl<'d> Resolver<'d> {
                     end_live,
                     start_guide: None,
                     end_guide: None,
+                    crosses: false,
                 });
             }
         }

@@ -4,6 +4,7 @@ mod bodies;
 mod cracks;
 mod crumbs;
 mod flaws;
+mod guides;
 mod ligaments;
 mod motion;
 mod narrow_bodies;
@@ -24,6 +25,7 @@ use crate::settings::ContactSettings;
 use fissure_plane::Vector;
 use std::cell::RefCell;
 
+pub(super) use guides::TOLERANCE as GUIDE_TOLERANCE;
 pub(crate) use origin::Origin;
 
 type Resolved<T> = Result<T, SceneFault>;

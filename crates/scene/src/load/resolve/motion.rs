@@ -10,6 +10,7 @@ use crate::range::{ANGULAR_VELOCITY, COORDINATE, VELOCITY};
 use crate::scene::*;
 use crate::validate::{validate_curve, validate_region};
 use fissure_plane::{Point, Region, Vector};
+use nalgebra::Vector3;
 
 impl<'d> Resolver<'d> {
     pub(super) fn colliders(&self, tolerance: f64) -> Resolved<Vec<Collider>> {
@@ -61,13 +62,11 @@ impl<'d> Resolver<'d> {
         };
         let still = [Keyframe { time: 0.0, position: [0.0; 2], angle: 0.0 }];
         let keyframes = if keys.keyframes.is_empty() { &still[..] } else { &keys.keyframes };
-        let keyframes = keyframes
-            .iter()
-            .map(|k| {
-                let pose = Pose { position: origin + Vector::from(k.position), angle: k.angle.to_radians() };
-                (k.time, pose)
-            })
-            .collect();
+        let drawn: Vec<(f64, Vector3<f64>)> =
+            keyframes.iter().map(|k| (k.time, Vector3::new(k.position[0], k.position[1], k.angle))).collect();
+        let pose =
+            |(time, at): (f64, Vector3<f64>)| (time, Pose { position: origin + at.xy(), angle: at.z.to_radians() });
+        let keyframes = keys.ease.between(&drawn).into_iter().map(pose).collect();
         Ok(Collider { name, shape, keyframes, contact: keys.contact, friction: keys.friction })
     }
 
@@ -88,7 +87,7 @@ impl<'d> Resolver<'d> {
             Ok(Load {
                 selection: self.selection(&path, &keys.select, scene, tolerance)?,
                 kind,
-                curve: curve(&keys.curve),
+                curve: curve(&path, &keys.curve, keys.ease)?,
             })
         };
         self.document.load.iter().enumerate().map(each).collect()
@@ -128,8 +127,14 @@ impl<'d> Resolver<'d> {
     }
 }
 
-fn curve(list: &[[f64; 2]]) -> Curve {
-    Curve { points: pairs(list) }
+/// A factor over time.
+///
+/// # Errors
+/// When the points that were written down are none of a curve.
+fn curve(path: &KeyPath, list: &[[f64; 2]], ease: Ease) -> Resolved<Curve> {
+    let drawn = Curve { points: pairs(list) };
+    validate_curve(path, &drawn)?;
+    Ok(Curve { points: ease.between(&drawn.points) })
 }
 
 /// Velocity along x and y and its factor over time, of a support that prescribes velocities or displacements.
@@ -140,10 +145,10 @@ fn prescribed(path: &KeyPath, keys: &SupportKeys) -> Resolved<([Option<f64>; 2],
     match (keys.fix, is_given(velocity), is_given(displacement)) {
         (Some(fix), false, false) => {
             let held = |is_held: bool| is_held.then_some(0.0);
-            Ok(([held(fix != Fix::Y), held(fix != Fix::X)], curve(&keys.curve)))
+            Ok(([held(fix != Fix::Y), held(fix != Fix::X)], curve(path, &keys.curve, keys.ease)?))
         }
-        (None, true, false) => Ok((velocity, curve(&keys.curve))),
-        (None, false, true) => way(path, displacement, &keys.curve),
+        (None, true, false) => Ok((velocity, curve(path, &keys.curve, keys.ease)?)),
+        (None, false, true) => way(path, displacement, &curve(path, &keys.curve, keys.ease)?.points),
         (None, false, false) => {
             let remedy = "add `fix = \"both\"`, `velocity_x`, `velocity_y`, `displacement_x` or `displacement_y`";
             Err(SceneFault::new(path.clone(), "a support holds nothing", remedy))
@@ -165,12 +170,10 @@ fn prescribed(path: &KeyPath, keys: &SupportKeys) -> Resolved<([Option<f64>; 2],
 const TURN: f64 = 1e-6;
 
 /// Displacements [m] at a factor of 1 and the way over time as velocities with their factor over time.
-fn way(path: &KeyPath, displacement: [Option<f64>; 2], list: &[[f64; 2]]) -> Resolved<([Option<f64>; 2], Curve)> {
+fn way(path: &KeyPath, displacement: [Option<f64>; 2], points: &[(f64, f64)]) -> Resolved<([Option<f64>; 2], Curve)> {
     for (key, way) in ["displacement_x", "displacement_y"].into_iter().zip(displacement) {
         COORDINATE.check(path.then(key), "the displacement of a support", way.unwrap_or(0.0))?;
     }
-    validate_curve(path, &curve(list))?;
-    let points = pairs(list);
     let of_curve = path.then("curve");
     match points.first() {
         Some(&(_, 0.0)) => (),

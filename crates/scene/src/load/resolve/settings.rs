@@ -56,7 +56,7 @@ impl<'d> Resolver<'d> {
         g.speed_limit = keys.speed_limit.unwrap_or(g.speed_limit);
         let speed = pairs(&keys.speed_keyframes);
         validate_speed(&KeyPath::setting("growth", "speed_keyframes"), g.speed_limit, Clock::Frames, &speed)?;
-        g.speed_curve = in_seconds(&speed, frames);
+        g.speed_curve = in_seconds(&keys.speed_ease.between(&speed), frames);
         if let Some(branching) = keys.branching {
             g.branching = branching.values().map(|values| Branching {
                 release_ratio: values.release_ratio.unwrap_or(RELEASE_RATIO),
