@@ -10,6 +10,8 @@ pub(crate) fn set(wish: Option<u16>) -> Result<usize, Failure> {
     let threads = wish.map_or_else(|| std::thread::available_parallelism().map_or(1, NonZero::get), usize::from);
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
+        // The solver runs on this thread: it would have to wake another one for each share of a step.
+        .use_current_thread()
         .build_global()
         .map_err(|error| cannot_start(threads, &error))?;
     Ok(threads)

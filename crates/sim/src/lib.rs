@@ -74,8 +74,8 @@
 //!
 //! # Features
 //!
-//! `threads` shares the work out, `system` asks how much memory is free before it is taken; without them nothing but
-//! arithmetic is needed.
+//! `threads` shares the work out, `wide` chooses the widest instructions as the program runs, `system` asks how much
+//! memory is free before it is taken; without them nothing but arithmetic is needed.
 
 #[doc(hidden)]
 pub mod bench;
@@ -102,6 +102,7 @@ mod threads;
 mod tip;
 mod total;
 mod updated;
+mod wide;
 
 pub use error::SimulationError;
 pub use foresight::warnings;
@@ -113,3 +114,4 @@ pub use material::elastic::Elastic;
 pub use simulation::{Counts, Estimate, Progress, Simulation};
 pub use tip::stress_intensity::{StressIntensity, crack_speed_factors, universal_function};
 pub use tip::williams::{TipField, moving_tip_fields, williams_fields};
+pub use wide::widest_instructions;

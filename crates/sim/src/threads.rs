@@ -3,9 +3,28 @@
 //! Nothing that is shared out adds numbers up, and what comes back is in order, so the results are the same either way.
 
 #[cfg(not(feature = "threads"))]
-pub(crate) use alone::{current_num_threads, join, prelude};
+pub(crate) use alone::{current_num_threads, is_at_hand, join, prelude};
 #[cfg(feature = "threads")]
 pub(crate) use rayon::{current_num_threads, join, prelude};
+
+/// Numbers of each list that a thread goes through at once: few enough to stay in the cache of its core, many enough to
+/// be worth handing out.
+const PART: usize = 4096;
+
+/// From so many numbers on, work is handed to threads that have to be woken.
+const WORTH_WAKING: usize = 20_000;
+
+/// The most of `count` numbers that go to one thread.
+pub(crate) fn part(count: usize) -> usize {
+    let is_worth_it = current_num_threads() > 1 && (is_at_hand() || count >= WORTH_WAKING);
+    if is_worth_it { PART } else { usize::MAX }
+}
+
+/// Whether this thread is one of those that share the work, so that handing some of it out costs little.
+#[cfg(feature = "threads")]
+fn is_at_hand() -> bool {
+    rayon::current_thread_index().is_some()
+}
 
 /// The part of `rayon` that the solver uses, for one thread.
 #[cfg(not(feature = "threads"))]
@@ -13,6 +32,11 @@ mod alone {
     /// Threads that share the work.
     pub(crate) fn current_num_threads() -> usize {
         1
+    }
+
+    /// Whether handing work out costs little.
+    pub(crate) fn is_at_hand() -> bool {
+        true
     }
 
     /// Does both.

@@ -8,6 +8,7 @@ use super::field_vectors::FieldVectors;
 use super::lattice::Lattice;
 use super::run::Run;
 use crate::grid::Grid;
+use crate::wide::{Loop, run_widest};
 use std::ops::Range;
 
 /// Cells treated at once.
@@ -23,7 +24,7 @@ struct RowConstants {
     inverse_cell_size: f64,
 }
 
-/// Every other row of cells: none shares a node with another.
+/// The rows of uncut cells.
 #[derive(Debug, Clone, Copy)]
 struct CellRows<'a> {
     /// Runs above each row of nodes.
@@ -33,54 +34,109 @@ struct CellRows<'a> {
     constants: &'a [RowConstants],
     /// Displacements of all fields.
     u: &'a FieldVectors,
-    /// Rows counted: even (0) or odd (1) ones.
-    parity: usize,
-    /// Nodes from which on rows are shared out between threads.
+    /// Nodes from which on a block of rows is shared out.
     part: usize,
 }
 
 impl CellRows<'_> {
-    /// Adds the forces of the cells above `rows` of nodes to `forces`, which begin at node `start`.
-    fn add_forces(&self, rows: Range<usize>, start: usize, forces: [&mut [f64]; 2]) {
+    /// Makes `forces`, which begin at node `start`, those of the cells above `rows` of nodes; the first of `rows` is
+    /// an even one.
+    ///
+    /// Two neighbouring rows of cells share a row of nodes. There the even row comes first and the odd one after it,
+    /// whatever the blocks and the threads, so that the sums are always the same: the odd row where two blocks meet
+    /// waits for both.
+    fn make_forces(&self, rows: Range<usize>, start: usize, forces: [&mut [f64]; 2]) {
         let [force_x, force_y] = forces;
-        if force_x.len() > self.part && rows.len() > 2 {
-            // Cut below a row of nodes that belongs to no cell of the row before.
-            let middle = rows.start + rows.len() / 2;
-            let middle = middle + (middle + self.parity) % 2;
-            let at = self.grid.row(middle).nodes.start;
-            let (lower_x, upper_x) = force_x.split_at_mut(at - start);
-            let (lower_y, upper_y) = force_y.split_at_mut(at - start);
-            crate::threads::join(
-                || self.add_forces(rows.start..middle, start, [lower_x, lower_y]),
-                || self.add_forces(middle..rows.end, at, [upper_x, upper_y]),
-            );
+        let middle = (rows.start + rows.len() / 2).next_multiple_of(2);
+        if force_x.len() <= self.part || middle + 1 >= rows.end {
+            run_widest(Block { cells: *self, rows, start, forces: [force_x, force_y] });
             return;
         }
-        for row in rows.filter(|row| row % 2 == self.parity) {
-            for &run in &self.runs[row] {
-                let lower = run.lower as usize..(run.lower + run.count + 1) as usize;
-                let upper = run.upper as usize..(run.upper + run.count + 1) as usize;
-                let u = self.u.each_ref().map(|u| [&u[lower.clone()], &u[upper.clone()]]);
-                let [x, y] = [&mut *force_x, &mut *force_y].map(|force| {
-                    let (below, above) = force.split_at_mut(upper.start - start);
-                    [&mut below[lower.start - start..lower.end - start], &mut above[..upper.len()]]
-                });
-                add_forces(self.constants[run.material as usize], u, [x, y]);
-            }
+        let at = self.grid.row(middle).nodes.start;
+        let (lower_x, upper_x) = force_x.split_at_mut(at - start);
+        let (lower_y, upper_y) = force_y.split_at_mut(at - start);
+        crate::threads::join(
+            || self.make_forces(rows.start..middle - 1, start, [lower_x, lower_y]),
+            || self.make_forces(middle..rows.end, at, [upper_x, upper_y]),
+        );
+        run_widest(Seam { cells: *self, row: middle - 1, start, forces: [force_x, force_y] });
+    }
+
+    /// Adds the forces of the cells above a row of nodes.
+    #[inline(always)]
+    fn add_row(&self, row: usize, start: usize, forces: &mut [&mut [f64]; 2]) {
+        for &run in &self.runs[row] {
+            let lower = run.lower as usize..(run.lower + run.count + 1) as usize;
+            let upper = run.upper as usize..(run.upper + run.count + 1) as usize;
+            let u = [&self.u[0], &self.u[1]];
+            let u = [[&u[0][lower.clone()], &u[0][upper.clone()]], [&u[1][lower.clone()], &u[1][upper.clone()]]];
+            let [force_x, force_y] = forces;
+            let (lower_x, upper_x) = force_x.split_at_mut(upper.start - start);
+            let (lower_y, upper_y) = force_y.split_at_mut(upper.start - start);
+            let lower = lower.start - start..lower.end - start;
+            let forces = [
+                [&mut lower_x[lower.clone()], &mut upper_x[..upper.len()]],
+                [&mut lower_y[lower], &mut upper_y[..upper.len()]],
+            ];
+            add_forces(self.constants[run.material as usize], u, forces);
         }
     }
 }
 
-/// From so many nodes on, rows go to several threads; below, handing out the work costs about as much as the work. The
-/// result is the same either way.
-const PARALLEL_NODES: usize = 20_000;
+/// Rows that one thread goes through.
+struct Block<'a> {
+    cells: CellRows<'a>,
+    rows: Range<usize>,
+    start: usize,
+    forces: [&'a mut [f64]; 2],
+}
+
+impl Loop for Block<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { cells, rows, start, mut forces } = self;
+        for force in &mut forces {
+            force.fill(0.0);
+        }
+        for even in rows.clone().step_by(2) {
+            cells.add_row(even, start, &mut forces);
+            if even > rows.start {
+                cells.add_row(even - 1, start, &mut forces);
+            }
+        }
+        if !rows.is_empty() && rows.len().is_multiple_of(2) {
+            cells.add_row(rows.end - 1, start, &mut forces);
+        }
+    }
+}
+
+/// The row of cells between two blocks.
+struct Seam<'a> {
+    cells: CellRows<'a>,
+    row: usize,
+    start: usize,
+    forces: [&'a mut [f64]; 2],
+}
+
+impl Loop for Seam<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(mut self) {
+        self.cells.add_row(self.row, self.start, &mut self.forces);
+    }
+}
 
 impl Lattice {
     /// Internal forces for the displacement `u` into `force`, with or without misfits.
     pub(super) fn internal_forces(&self, u: &FieldVectors, with_misfits: bool, force: &mut FieldVectors) {
+        let nodes = self.grid.len();
         for f in force.iter_mut() {
-            f.clear();
             f.resize(self.field_count(), 0.0);
+            // Of further fields; those of the nodes are made anew below.
+            f[nodes..].fill(0.0);
         }
         let volume = self.particles.spacing * self.particles.spacing;
         let inverse_cell_size = 1.0 / self.grid.cell_size;
@@ -93,15 +149,15 @@ impl Lattice {
                 inverse_cell_size,
             })
             .collect();
-        let threads = crate::threads::current_num_threads();
-        let part = if self.grid.len() >= PARALLEL_NODES && threads > 1 { PARALLEL_NODES / 4 } else { usize::MAX };
-        // Two neighbouring rows of cells share a row of nodes: even rows first, then odd ones, each pass without a
-        // shared node. The order of additions at a node is the same for any number of threads.
-        for parity in 0..2 {
-            let rows = CellRows { runs: &self.layout.runs, grid: &self.grid, constants: &constants, u, parity, part };
-            let [force_x, force_y] = &mut *force;
-            rows.add_forces(0..self.grid.rows(), 0, [force_x, force_y]);
-        }
+        let cells = CellRows {
+            runs: &self.layout.runs,
+            grid: &self.grid,
+            constants: &constants,
+            u,
+            part: crate::threads::part(nodes),
+        };
+        let [force_x, force_y] = &mut *force;
+        cells.make_forces(0..self.grid.rows(), 0, [&mut force_x[..nodes], &mut force_y[..nodes]]);
         self.layout.cut.add_forces(&self.particles, &self.materials, u, with_misfits, force);
     }
 }
@@ -109,6 +165,7 @@ impl Lattice {
 /// Adds the internal forces f_i = −Σ_p V_p P_p ∇w_ip of a run of cells to those of its two rows of nodes.
 ///
 /// `u`, `forces`: x, then y, each of the lower and the upper row.
+#[inline(always)]
 fn add_forces(constants: RowConstants, u: [[&[f64]; 2]; 2], forces: [[&mut [f64]; 2]; 2]) {
     let [[lower_x, upper_x], [lower_y, upper_y]] = forces;
     let [[u_lower_x, u_upper_x], [u_lower_y, u_upper_y]] = u;
@@ -150,7 +207,9 @@ fn add_forces(constants: RowConstants, u: [[&[f64]; 2]; 2], forces: [[&mut [f64]
 #[inline(always)]
 fn cell_forces(count: usize, constants: RowConstants, u: [&[f64]; 8], corner: &mut [[f64; BLOCK]; 8]) {
     let RowConstants { two_mu, lambda, inverse_cell_size } = constants;
-    let [x00, x10, x01, x11, y00, y10, y01, y11] = u.map(|s| &s[..count]);
+    let [x00, x10, x01, x11, y00, y10, y01, y11] = u;
+    let (x00, x10, x01, x11) = (&x00[..count], &x10[..count], &x01[..count], &x11[..count]);
+    let (y00, y10, y01, y11) = (&y00[..count], &y10[..count], &y01[..count], &y11[..count]);
     for k in 0..count {
         // Differences along the four edges of the cell, over h.
         let bottom = [(x10[k] - x00[k]) * inverse_cell_size, (y10[k] - y00[k]) * inverse_cell_size];
@@ -198,6 +257,7 @@ fn cell_forces(count: usize, constants: RowConstants, u: [&[f64]; 8], corner: &m
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::wide::run_in_all;
     use fissure_scene::Matrix;
 
     /// Truth: a rigid turn makes no stress, whatever its angle; next to half a turn r + cosine cancels.
@@ -219,6 +279,42 @@ mod tests {
             add_forces(constants, [[&lx, &ux], [&ly, &uy]], [[fx, gx], [fy, gy]]);
             let most = found.iter().flatten().fold(0.0_f64, |m, f| m.max(f.abs()));
             assert!(most < 1e-13, "{most} at {angle}");
+        }
+    }
+
+    /// A run of `count` cells between two rows of nodes.
+    struct OneRun<'a> {
+        constants: RowConstants,
+        u: [[&'a [f64]; 2]; 2],
+    }
+
+    impl Loop for OneRun<'_> {
+        type Output = [Vec<f64>; 4];
+
+        #[inline(always)]
+        fn run(self) -> Self::Output {
+            let mut found = [0; 4].map(|_| vec![0.0; self.u[0][0].len()]);
+            let [fx, fy, gx, gy] = found.each_mut().map(|f| f.as_mut_slice());
+            add_forces(self.constants, self.u, [[fx, gx], [fy, gy]]);
+            found
+        }
+    }
+
+    /// Truth: the instructions that every machine has. Runs of all lengths around the widths, numbers of all sizes.
+    #[test]
+    fn all_instructions_give_the_same_bits() {
+        let constants = RowConstants { two_mu: 2.6, lambda: 2.1, inverse_cell_size: 1.0 / 0.7 };
+        for count in (1..70).chain([400]) {
+            let values = |seed: f64| -> Vec<f64> {
+                (0..=count).map(|i| (f64::from(i) * seed).sin() * 10.0_f64.powi(i % 9 - 7)).collect()
+            };
+            let (lx, ly, ux, uy) = (values(1.1), values(2.3), values(3.7), values(5.3));
+            let found = run_in_all(|| OneRun { constants, u: [[&lx, &ux], [&ly, &uy]] });
+            let bits = |forces: &[Vec<f64>; 4]| forces.concat().iter().map(|f| f.to_bits()).collect::<Vec<_>>();
+            assert!(found[0].1.concat().iter().all(|f| f.is_finite() && *f != 0.0), "{count} cells");
+            for (name, forces) in &found[1..] {
+                assert!(bits(forces) == bits(&found[0].1), "{name}, {count} cells");
+            }
         }
     }
 
