@@ -39,6 +39,11 @@ impl CutParticles {
         saved::below("a strained row", self.strained.iter().copied(), rows)
     }
 
+    /// The particles on the general path.
+    pub(super) fn particles(&self) -> impl Iterator<Item = usize> {
+        self.stencils.iter().map(|(p, _)| p)
+    }
+
     /// Entries of a particle, if it is on the general path.
     #[inline]
     pub(super) fn entries_of(&self, particle: usize) -> Option<&[Entry]> {

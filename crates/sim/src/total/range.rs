@@ -3,8 +3,13 @@
 use super::field_vectors::FieldVectors;
 use super::lattice::Lattice;
 use super::motion::Motion;
+use super::run::Run;
 use crate::SimulationError;
 use crate::material::constitutive::principal_stretches;
+use crate::threads;
+use crate::wide::{Loop, run_widest};
+use fissure_plane::Matrix;
+use std::ops::Range;
 
 /// Volume ratio below which the total Lagrangian formulation is out of its range.
 const SMALLEST_VOLUME_RATIO: f64 = 0.2;
@@ -12,61 +17,172 @@ const SMALLEST_VOLUME_RATIO: f64 = 0.2;
 /// Principal stretch above which it is.
 const LARGEST_STRETCH: f64 = 3.0;
 
-/// With no component of H above this, ‖H‖ is at most twice it, so that the singular values of F lie between 0.5 and 1.5
-/// and det F is at least 0.25: within the range.
-const SOUND_STRAIN: f64 = 0.25;
-
 /// Whether every particle is finite and within the range of the formulation at the time `time` [s].
 ///
 /// # Errors
 /// When one is not.
 pub(super) fn check_range(lattice: &Lattice, motion: &Motion, time: f64) -> Result<(), SimulationError> {
-    let whole_cells_are_sound = largest_edge_strain(lattice, &motion.displacement) < SOUND_STRAIN;
     let mut reader = lattice.reader();
-    for p in 0..lattice.particles.len() {
-        if whole_cells_are_sound && lattice.layout.cut.entries_of(p).is_none() {
-            continue;
-        }
-        let now = reader.motion(p, motion);
-        let (h, place) = (now.strain, lattice.particles.rest[p] + now.displacement);
-        let fail = |cause: String| SimulationError::Unstable { time, x: place.x, y: place.y, cause };
-        let volume_ratio = 1.0 + crate::volume_change(&h);
-        if !volume_ratio.is_finite() {
-            return Err(fail(format!(
-                "particle {p} has lost its finite state; use a smaller `solver.courant` or weaker loads"
-            )));
-        }
-        let [stretch, _] = principal_stretches(&h);
-        if volume_ratio < SMALLEST_VOLUME_RATIO || stretch > LARGEST_STRETCH {
-            return Err(SimulationError::OutOfRange {
-                time,
-                x: place.x,
-                y: place.y,
-                cause: format!(
-                    "particle {p} is stretched to {stretch:.2} with a volume ratio of {volume_ratio:.2}, out of the range of the \
-                     total Lagrangian formulation (below {LARGEST_STRETCH} and above {SMALLEST_VOLUME_RATIO})"
-                ),
-            });
-        }
+    let mut is_in_range = |p| is_in_range(&reader.strain(p, &motion.displacement));
+    if whole_cells_are_in_range(lattice, &motion.displacement) && lattice.layout.cut.particles().all(&mut is_in_range) {
+        return Ok(());
     }
-    Ok(())
+    match (0..lattice.particles.len()).find(|&p| !is_in_range(p)) {
+        Some(particle) => Err(out_of_range(lattice, motion, time, particle)),
+        None => Ok(()),
+    }
 }
 
-/// Largest difference of displacement along an edge of an uncut cell, over its length. A bound for every such cell: no
-/// component of H in it is larger. NaN gives infinity.
-fn largest_edge_strain(lattice: &Lattice, u: &FieldVectors) -> f64 {
-    let mut largest = 0.0_f64;
-    for u in u {
-        let mut look = |a: f64, b: f64| {
-            let difference = (a - b).abs();
-            largest = if difference <= f64::MAX { largest.max(difference) } else { f64::INFINITY };
-        };
-        for run in lattice.layout.runs.iter().flatten() {
-            let [lower, upper] =
-                [run.lower, run.upper].map(|first| &u[first as usize..(first + run.count + 1) as usize]);
-            [lower, upper].into_iter().for_each(|row| row.windows(2).for_each(|w| look(w[0], w[1])));
-            lower.iter().zip(upper).for_each(|(a, b)| look(*a, *b));
+/// Whether a particle with the displacement gradient `h` is finite and within the range.
+fn is_in_range(h: &Matrix) -> bool {
+    let volume_ratio = 1.0 + crate::volume_change(h);
+    // The largest stretch is at most ‖F‖.
+    let is_surely_short = (Matrix::identity() + h).norm_squared() <= LARGEST_STRETCH * LARGEST_STRETCH;
+    volume_ratio.is_finite()
+        && volume_ratio >= SMALLEST_VOLUME_RATIO
+        && (is_surely_short || principal_stretches(h)[0] <= LARGEST_STRETCH)
+}
+
+/// What a particle that is not finite, or out of the range, ends the run with.
+fn out_of_range(lattice: &Lattice, motion: &Motion, time: f64, particle: usize) -> SimulationError {
+    let now = lattice.reader().motion(particle, motion);
+    let (h, place) = (now.strain, lattice.particles.rest[particle] + now.displacement);
+    let volume_ratio = 1.0 + crate::volume_change(&h);
+    if !volume_ratio.is_finite() {
+        let cause =
+            format!("particle {particle} has lost its finite state; use a smaller `solver.courant` or weaker loads");
+        return SimulationError::Unstable { time, x: place.x, y: place.y, cause };
+    }
+    let [stretch, _] = principal_stretches(&h);
+    let cause = format!(
+        "particle {particle} is stretched to {stretch:.2} with a volume ratio of {volume_ratio:.2}, out of the range of the \
+         total Lagrangian formulation (below {LARGEST_STRETCH} and above {SMALLEST_VOLUME_RATIO})"
+    );
+    SimulationError::OutOfRange { time, x: place.x, y: place.y, cause }
+}
+
+/// Whether every particle of an uncut cell is finite and within the range, however the material has moved and turned.
+fn whole_cells_are_in_range(lattice: &Lattice, u: &FieldVectors) -> bool {
+    let rows = 0..lattice.grid.rows();
+    let part = threads::part(lattice.grid.len());
+    let rows_of_part = rows.len() / (lattice.grid.len() / part.max(1)).max(1);
+    rows_are_in_range(lattice, u, rows, rows_of_part.max(1))
+}
+
+/// Whether every particle of an uncut cell in `rows` is, shared out in parts of at most `part` rows.
+fn rows_are_in_range(lattice: &Lattice, u: &FieldVectors, rows: Range<usize>, part: usize) -> bool {
+    if rows.len() <= part {
+        return run_widest(Rows {
+            runs: &lattice.layout.runs[rows],
+            u,
+            inverse_cell_size: 1.0 / lattice.grid.cell_size,
+        });
+    }
+    let middle = rows.start + rows.len() / 2;
+    let (lower, upper) = threads::join(
+        || rows_are_in_range(lattice, u, rows.start..middle, part),
+        || rows_are_in_range(lattice, u, middle..rows.end, part),
+    );
+    lower && upper
+}
+
+/// Rows of uncut cells that are looked at.
+struct Rows<'a> {
+    runs: &'a [Vec<Run>],
+    u: &'a FieldVectors,
+    inverse_cell_size: f64,
+}
+
+impl Loop for Rows<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run(self) -> bool {
+        let [u_x, u_y] = self.u;
+        for run in self.runs.iter().flatten() {
+            let lower = run.lower as usize..(run.lower + run.count + 1) as usize;
+            let upper = run.upper as usize..(run.upper + run.count + 1) as usize;
+            let u = [[&u_x[lower.clone()], &u_x[upper.clone()]], [&u_y[lower], &u_y[upper]]];
+            if !are_in_range(u, self.inverse_cell_size) {
+                return false;
+            }
+        }
+        true
+    }
+}
+
+/// Whether all particles of a run of cells are within the range; `u`: x, then y, each of the lower and the upper row.
+///
+/// Within a cell the columns of F are means of opposite edges: F e₁ = (1−b) b₀ + b b₁ with the lower and the upper edge
+/// as they are now, over h, and F e₂ = (1−a) a₀ + a a₁ with the left and the right one. So det F lies among the four
+/// products b × a of the corners, and the largest stretch, at most ‖F‖, is bounded by the longest edges of both pairs.
+#[inline(always)]
+fn are_in_range(u: [[&[f64]; 2]; 2], inverse_cell_size: f64) -> bool {
+    let [[x0, x1], [y0, y1]] = u;
+    let count = x0.len() - 1;
+    let (x00, x01, y00, y01) = (&x0[..count], &x1[..count], &y0[..count], &y1[..count]);
+    let (x10, x11, y10, y11) = (&x0[1..=count], &x1[1..=count], &y0[1..=count], &y1[1..=count]);
+    let along = |difference: f64| 1.0 + difference * inverse_cell_size;
+    let across = |difference: f64| difference * inverse_cell_size;
+    let mut are_in_range = true;
+    for k in 0..count {
+        let bottom = [along(x10[k] - x00[k]), across(y10[k] - y00[k])];
+        let top = [along(x11[k] - x01[k]), across(y11[k] - y01[k])];
+        let left = [across(x01[k] - x00[k]), along(y01[k] - y00[k])];
+        let right = [across(x11[k] - x10[k]), along(y11[k] - y10[k])];
+        let squared = |edge: [f64; 2]| edge[0] * edge[0] + edge[1] * edge[1];
+        let area = |b: [f64; 2], a: [f64; 2]| b[0] * a[1] - b[1] * a[0];
+        // Comparisons with what is not a number are false.
+        for (b, a) in [(bottom, left), (bottom, right), (top, left), (top, right)] {
+            are_in_range &= area(b, a) >= SMALLEST_VOLUME_RATIO;
+            are_in_range &= squared(b) + squared(a) <= LARGEST_STRETCH * LARGEST_STRETCH;
         }
     }
-    largest / lattice.grid.cell_size
+    are_in_range
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Truth: `is_in_range`, particle by particle. A cell of which a particle is out of range is never passed; one
+        /// that is only turned, stretched a little and moved far away always is.
+        #[test]
+        fn cells_in_range_have_particles_in_range(
+            corners in prop::array::uniform8(-1.2_f64..1.2),
+            strain in prop::array::uniform4(-0.2_f64..0.2),
+            angle in -4.0_f64..4.0,
+            away in -1e3_f64..1e3,
+        ) {
+            let pass = |c: [f64; 8]| {
+                are_in_range([[&[c[0], c[1]], &[c[2], c[3]]], [&[c[4], c[5]], &[c[6], c[7]]]], 1.0)
+            };
+            let gradients = [(0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75)].map(|(a, b)| {
+                let slope = |u: &[f64]| [
+                    (1.0 - b) * (u[1] - u[0]) + b * (u[3] - u[2]),
+                    (1.0 - a) * (u[2] - u[0]) + a * (u[3] - u[1]),
+                ];
+                let [[h11, h12], [h21, h22]] = [slope(&corners[..4]), slope(&corners[4..])];
+                Matrix::new(h11, h12, h21, h22)
+            });
+            prop_assert!(!pass(corners) || gradients.iter().all(is_in_range));
+            let (sine, cosine) = angle.sin_cos();
+            let f = Matrix::new(cosine, -sine, sine, cosine)
+                * (Matrix::identity() + Matrix::new(strain[0], strain[1], strain[2], strain[3]));
+            let h = f - Matrix::identity();
+            let moved = [(h.m11, h.m12), (h.m21, h.m22)].map(|(x, y)| [away, away + x, away + y, away + x + y]);
+            prop_assert!(pass([moved[0], moved[1]].concat().try_into().unwrap_or([f64::NAN; 8])));
+        }
+    }
+
+    #[test]
+    fn what_is_no_number_is_out_of_range() {
+        for value in [f64::NAN, f64::INFINITY] {
+            let row = [0.0, value, 0.0];
+            assert!(!are_in_range([[&row, &[0.0; 3]], [&[0.0; 3], &[0.0; 3]]], 1.0));
+            assert!(!is_in_range(&Matrix::new(0.0, value, 0.0, 0.0)));
+        }
+    }
 }
