@@ -20,6 +20,35 @@ pub(crate) fn part(count: usize) -> usize {
     if is_worth_it { PART } else { usize::MAX }
 }
 
+/// Shares out `lists` of one length in parts of at most `part` numbers: `work` is given the place of the first number
+/// of a part, and the part of each list.
+pub(crate) fn share_out<T: Send, const N: usize>(
+    lists: [&mut [T]; N],
+    part: usize,
+    work: &(impl Fn(usize, [&mut [T]; N]) + Sync),
+) {
+    share_out_from(0, lists, part, work);
+}
+
+fn share_out_from<T: Send, const N: usize>(
+    start: usize,
+    mut lists: [&mut [T]; N],
+    part: usize,
+    work: &(impl Fn(usize, [&mut [T]; N]) + Sync),
+) {
+    let count = lists.first().map_or(0, |list| list.len());
+    if count <= part {
+        return work(start, lists);
+    }
+    let middle = count / 2;
+    let upper = lists.each_mut().map(|list| {
+        let (lower, upper) = std::mem::take(list).split_at_mut(middle);
+        *list = lower;
+        upper
+    });
+    join(|| share_out_from(start, lists, part, work), || share_out_from(start + middle, upper, part, work));
+}
+
 /// Whether this thread is one of those that share the work, so that handing some of it out costs little.
 #[cfg(feature = "threads")]
 fn is_at_hand() -> bool {

@@ -89,9 +89,15 @@ impl Entries {
         &self.entries[self.first[row] as usize..self.first[row + 1] as usize]
     }
 
+    /// Particle and entries of a row.
+    #[inline]
+    pub(crate) fn row(&self, row: usize) -> (usize, &[Entry]) {
+        (self.particle[row] as usize, self.of_row(row))
+    }
+
     /// Every particle that has a row with its entries, row by row.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (usize, &[Entry])> {
-        self.particle.iter().enumerate().map(|(row, &particle)| (particle as usize, self.of_row(row)))
+        (0..self.rows()).map(|row| self.row(row))
     }
 
     /// Adds the row of a particle that has none.

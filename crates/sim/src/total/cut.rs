@@ -5,11 +5,15 @@ use crate::grid::entries::{Entries, Entry};
 use crate::material::elastic::Elastic;
 use crate::particles::Particles;
 use crate::saved::{self, Fits};
+use crate::threads;
 use fissure_plane::Matrix;
 use serde::{Deserialize, Serialize};
 
 /// A misfit below this is round-off [–].
 const NO_MISFIT: f64 = 1e-15;
+
+/// What the stress of a row takes, over what a number of a list takes that is added to another.
+const ROW_COST: usize = 32;
 
 /// Particles with stored stencils.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -100,8 +104,9 @@ impl CutParticles {
         with_misfits: bool,
         force: &mut FieldVectors,
     ) {
-        let [force_x, force_y] = force;
-        for (row, (p, entries)) in self.stencils.iter().enumerate() {
+        // First Piola–Kirchhoff stress times volume [N m].
+        let stress = |row: usize| {
+            let (p, entries) = self.stencils.row(row);
             let mut h = if with_misfits { self.misfit_of_row(row) } else { Matrix::zeros() };
             for e in entries {
                 let (x, y) = (u[0][e.field as usize], u[1][e.field as usize]);
@@ -111,11 +116,25 @@ impl CutParticles {
                 h.m22 += y * e.gradient.y;
             }
             let elastic = &materials[particles.material[p] as usize];
-            let stress = crate::first_piola_stress(&h, elastic.mu, elastic.lambda) * particles.volume[p];
-            for e in entries {
+            crate::first_piola_stress(&h, elastic.mu, elastic.lambda) * particles.volume[p]
+        };
+        let [force_x, force_y] = force;
+        let mut add = |row: usize, stress: Matrix| {
+            for e in self.stencils.row(row).1 {
                 force_x[e.field as usize] -= stress.m11 * e.gradient.x + stress.m12 * e.gradient.y;
                 force_y[e.field as usize] -= stress.m21 * e.gradient.x + stress.m22 * e.gradient.y;
             }
+        };
+        let rows = self.stencils.rows();
+        let part = threads::part(ROW_COST * rows) / ROW_COST;
+        if part >= rows {
+            return (0..rows).for_each(|row| add(row, stress(row)));
         }
+        // Rows share fields: only stresses are shared out, and added one after the other.
+        let mut stresses = vec![Matrix::zeros(); rows];
+        threads::share_out([&mut stresses], part, &|start, [stresses]| {
+            stresses.iter_mut().enumerate().for_each(|(k, of_row)| *of_row = stress(start + k));
+        });
+        stresses.into_iter().enumerate().for_each(|(row, of_row)| add(row, of_row));
     }
 }

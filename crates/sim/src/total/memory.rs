@@ -6,7 +6,8 @@ use crate::grid::kernel;
 use crate::memory::amounts::{Amounts, Need};
 use fissure_scene::{Kernel, Scene};
 
-/// Lists of a number per field: mass and its inverse; x and y of displacement, velocity, acceleration and force.
+/// Lists of a number per field: mass and its inverse; x and y of displacement, velocity, the velocity before the kick,
+/// and force.
 const NUMBERS_PER_FIELD: usize = 2 + 4 * 2;
 /// Those of them that the state has.
 const SAVED_PER_FIELD: usize = 5;

@@ -283,7 +283,6 @@ impl Solver for Total {
             self.touching.resolve_again(&mut self.motion);
         }
         self.external_work += self.touching.keep(kick, &self.motion);
-        self.motion.take_accelerations(kick);
         self.count_work(middle, time_step);
         observe(&self.look(0.5 * time_step));
         // u += Δt v.

@@ -3,6 +3,8 @@
 use super::field_vectors::{FieldVectors, at};
 use super::lattice::Lattice;
 use crate::saved::{self, Fits};
+use crate::threads;
+use crate::wide::{Loop, run_widest};
 use fissure_plane::Vector;
 use fissure_scene::Scene;
 use serde::{Deserialize, Serialize};
@@ -19,9 +21,12 @@ pub(super) struct Motion {
     in_step: bool,
     /// Length of the last step [s].
     pub(super) last_step: f64,
-    /// Acceleration of the last step [m/s²].
+    /// Velocities before the last kick [m/s].
     #[serde(skip)]
-    pub(super) acceleration: FieldVectors,
+    before_kick: FieldVectors,
+    /// Time that the last kick took [s]; 0 before the first one.
+    #[serde(skip)]
+    last_kick: f64,
     /// Force of the last step [N/m].
     #[serde(skip)]
     pub(super) force: FieldVectors,
@@ -45,7 +50,8 @@ impl Motion {
             velocity: zeros(),
             in_step: true,
             last_step: 0.0,
-            acceleration: zeros(),
+            before_kick: zeros(),
+            last_kick: 0.0,
             force: zeros(),
         }
     }
@@ -92,7 +98,7 @@ impl Motion {
 
     /// Makes room for new fields.
     pub(super) fn resize(&mut self, fields: usize) {
-        let vectors = [&mut self.displacement, &mut self.velocity, &mut self.acceleration, &mut self.force];
+        let vectors = [&mut self.displacement, &mut self.velocity, &mut self.before_kick, &mut self.force];
         for values in vectors.into_iter().flatten() {
             values.resize(fields, 0.0);
         }
@@ -110,58 +116,60 @@ impl Motion {
         at(&self.velocity, field)
     }
 
+    /// Acceleration of a field in the last step [m/s²]: what kick and impulses have made of the velocity before.
+    #[inline]
+    pub(super) fn acceleration(&self, field: usize) -> Vector {
+        if self.last_kick == 0.0 {
+            return Vector::zeros();
+        }
+        (self.velocity(field) - at(&self.before_kick, field)) / self.last_kick
+    }
+
     /// Sets all velocities to zero.
     pub(super) fn stop(&mut self) {
         self.velocity.iter_mut().for_each(|v| v.fill(0.0));
-        self.acceleration.iter_mut().for_each(|a| a.fill(0.0));
         self.last_step = 0.0;
+        self.last_kick = 0.0;
         self.in_step = true;
     }
 
     /// v += Δt f/m, with gravity, and with velocities that decay at the rate `damping` [1/s]. Returns the time that the
-    /// kick takes: a step, but half a step from rest. Keeps the velocities before it in place of the accelerations.
+    /// kick takes: a step, but half a step from rest.
     pub(super) fn kick(&mut self, inverse_mass: &[f64], gravity: Vector, damping: f64, time_step: f64) -> f64 {
         let kick = if self.in_step { 0.5 * time_step } else { time_step };
-        self.in_step = false;
-        let decay = (-damping * kick).exp();
-        let push = kick / force_of_impulse(damping, kick);
+        (self.in_step, self.last_kick) = (false, kick);
+        let (decay, push) = ((-damping * kick).exp(), kick / force_of_impulse(damping, kick));
+        let part = threads::part(inverse_mass.len());
         for axis in 0..2 {
-            let g = gravity[axis];
-            let (velocity, acceleration) = (&mut self.velocity[axis], &mut self.acceleration[axis]);
-            let force = &self.force[axis];
-            for d in 0..velocity.len() {
-                let before = velocity[d];
-                // Fields without mass have an inverse mass of zero and stay where they are.
-                let moving = if inverse_mass[d] > 0.0 { g } else { 0.0 };
-                velocity[d] = before * decay + push * (force[d] * inverse_mass[d] + moving);
-                acceleration[d] = before;
-            }
+            let (force, gravity) = (&self.force[axis], gravity[axis]);
+            let lists = [&mut self.velocity[axis], &mut self.before_kick[axis]].map(Vec::as_mut_slice);
+            threads::share_out(lists, part, &|start, [velocity, before]| {
+                let fields = start..start + velocity.len();
+                let (force, inverse_mass) = (&force[fields.clone()], &inverse_mass[fields]);
+                run_widest(Kick { velocity, before, force, inverse_mass, gravity, decay, push });
+            });
         }
         kick
     }
 
-    /// Velocities before the kick of this step, until accelerations are taken.
+    /// Velocities before the kick of this step.
     pub(super) fn before_kick(&self) -> &FieldVectors {
-        &self.acceleration
+        &self.before_kick
     }
 
-    /// Makes the accelerations of what all kicks of a step, `kick` [s] long, have made of the velocities before it.
-    pub(super) fn take_accelerations(&mut self, kick: f64) {
-        for axis in 0..2 {
-            let (velocity, acceleration) = (&self.velocity[axis], &mut self.acceleration[axis]);
-            for d in 0..velocity.len() {
-                acceleration[d] = (velocity[d] - acceleration[d]) / kick;
-            }
-        }
+    /// Velocities along an axis, and what they were before the kick of this step.
+    pub(super) fn velocity_and_before(&mut self, axis: usize) -> (&mut [f64], &[f64]) {
+        (&mut self.velocity[axis], &self.before_kick[axis])
     }
 
     /// u += Δt v.
     pub(super) fn drift(&mut self, time_step: f64) {
-        for axis in 0..2 {
-            let (velocity, displacement) = (&self.velocity[axis], &mut self.displacement[axis]);
-            for d in 0..velocity.len() {
-                displacement[d] += time_step * velocity[d];
-            }
+        let part = threads::part(self.velocity[0].len());
+        for (displacement, velocity) in self.displacement.iter_mut().zip(&self.velocity) {
+            threads::share_out([displacement], part, &|start, [displacement]| {
+                let velocity = &velocity[start..start + displacement.len()];
+                run_widest(Drift { displacement, velocity, time_step });
+            });
         }
         self.last_step = time_step;
     }
@@ -175,5 +183,51 @@ impl Motion {
     pub(super) fn power_of_gravity(&self, mass: &[f64], gravity: Vector) -> f64 {
         let v = &self.velocity;
         mass.iter().enumerate().map(|(d, m)| m * (gravity.x * v[0][d] + gravity.y * v[1][d])).sum()
+    }
+}
+
+/// The kick of some fields along one axis.
+struct Kick<'a> {
+    velocity: &'a mut [f64],
+    before: &'a mut [f64],
+    force: &'a [f64],
+    inverse_mass: &'a [f64],
+    gravity: f64,
+    decay: f64,
+    push: f64,
+}
+
+impl Loop for Kick<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { velocity, before, force, inverse_mass, gravity, decay, push } = self;
+        let count = velocity.len();
+        let (before, force, inverse_mass) = (&mut before[..count], &force[..count], &inverse_mass[..count]);
+        for d in 0..count {
+            before[d] = velocity[d];
+            // Fields without mass have an inverse mass of zero and stay where they are.
+            let moving = if inverse_mass[d] > 0.0 { gravity } else { 0.0 };
+            velocity[d] = before[d] * decay + push * (force[d] * inverse_mass[d] + moving);
+        }
+    }
+}
+
+/// The drift of some fields along one axis.
+struct Drift<'a> {
+    displacement: &'a mut [f64],
+    velocity: &'a [f64],
+    time_step: f64,
+}
+
+impl Loop for Drift<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for (displacement, velocity) in self.displacement.iter_mut().zip(self.velocity) {
+            *displacement += self.time_step * velocity;
+        }
     }
 }

@@ -108,7 +108,7 @@ impl<'a> Reader<'a> {
             rates.displacement += fields.displacement(field) * w;
             rates.velocity += v * w;
             add_outer(&mut rates.velocity_gradient, v, g);
-            rates.acceleration += at(&fields.acceleration, field) * w;
+            rates.acceleration += fields.acceleration(field) * w;
         });
         rates
     }

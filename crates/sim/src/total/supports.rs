@@ -115,7 +115,7 @@ impl Supports {
                 of_axis.map_or(0.0, |held| held.velocity())
             };
             let speeds: Vec<f64> = supports.iter().map(speed).collect();
-            let (velocity, before) = (&mut motion.velocity[axis], &motion.acceleration[axis]);
+            let (velocity, before) = motion.velocity_and_before(axis);
             system.apply(
                 |support| speeds[support as usize],
                 mass,
