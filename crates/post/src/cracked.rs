@@ -4,6 +4,7 @@ use crate::boolean::{Shape, material, twice_area};
 use crate::edges::MovedLines;
 use crate::error::PostError;
 use crate::extrude::Extrusion;
+use crate::held_open::{parted_segments, shifts};
 use crate::mesh::{Content, Mesh, object_name};
 use crate::options::PostOptions;
 use crate::outline::outline_edges;
@@ -12,7 +13,7 @@ use crate::pinch::part_pinches;
 use crate::slivers::without_slivers;
 use crate::snap::Grid;
 use crate::source::SourceEdge;
-use fissure_scene::{Fragments, Frame, Scene};
+use fissure_scene::{CrackFrame, Fragments, Frame, Scene, Walls};
 use std::collections::BTreeMap;
 
 /// One solid per fragment, by body and number.
@@ -20,10 +21,16 @@ use std::collections::BTreeMap;
 /// Each is made of its own boundary alone, so that what touches or overlaps is never joined.
 pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result<Vec<Mesh>, PostError> {
     let fragments = Fragments::of_frame(frame);
-    let lines = MovedLines::new(scene, frame);
+    let numbers = numbers(&fragments, frame);
     let grids = grids(scene, frame, true)?;
+    let mut lines = MovedLines::new(scene, frame);
+    if options.walls == Walls::All {
+        let parted = parted_segments(&frame.cracks, &fragments, &numbers);
+        let of_crack = |(crack, parted): (&CrackFrame, Vec<bool>)| shifts(crack, &parted, grids[crack.body as usize]);
+        lines = lines.hold_open(frame.cracks.iter().zip(parted).map(of_crack).collect());
+    }
     let mut sources = BTreeMap::<(u32, u32), Vec<SourceEdge>>::new();
-    for (fragment, number) in fragments.list().iter().zip(numbers(&fragments, frame)) {
+    for (fragment, number) in fragments.list().iter().zip(numbers) {
         let grid = grids[fragment.body as usize];
         let edges = fragment.boundaries.iter().flat_map(|boundary| lines.edges(boundary, grid));
         sources.entry((fragment.body, number)).or_default().extend(edges);

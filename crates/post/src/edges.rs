@@ -28,6 +28,8 @@ pub(crate) struct MovedLines<'a> {
     /// on the way back.
     ring_arcs: Vec<Vec<f64>>,
     crack_arcs: Vec<Vec<f64>>,
+    /// How far each point of the face above each crack is moved to hold it open, and that below the other way [m].
+    shifts: Vec<Vec<Vector>>,
 }
 
 impl<'a> MovedLines<'a> {
@@ -47,7 +49,13 @@ impl<'a> MovedLines<'a> {
             frame,
             ring_arcs: frame.outlines.iter().map(|o| ring(&o.rest)).collect(),
             crack_arcs: frame.cracks.iter().map(|c| arc_lengths(&c.rest, first(c.crack))).collect(),
+            shifts: frame.cracks.iter().map(|c| vec![Vector::zeros(); c.rest.len()]).collect(),
         }
+    }
+
+    /// Holds each crack open by its shifts, one for each of its points.
+    pub(crate) fn hold_open(self, shifts: Vec<Vec<Vector>>) -> Self {
+        Self { shifts, ..self }
     }
 
     /// The edges of a boundary, in its order, on `grid`. Where the walk passes from one line to another both edges end
@@ -92,8 +100,8 @@ impl<'a> MovedLines<'a> {
         let (cracks, rings) = (&self.frame.cracks, &self.frame.outlines);
         let (place, velocity) = match line {
             Line::Ring(i) => (rings[i].position[point], rings[i].velocity[point]),
-            Line::Above(i) => (cracks[i].above[point], cracks[i].above_velocity[point]),
-            Line::Below(i) => (cracks[i].below[point], cracks[i].below_velocity[point]),
+            Line::Above(i) => (cracks[i].above[point] + self.shifts[i][point], cracks[i].above_velocity[point]),
+            Line::Below(i) => (cracks[i].below[point] - self.shifts[i][point], cracks[i].below_velocity[point]),
         };
         Now { place, velocity }
     }

@@ -8,7 +8,8 @@
 //!    and each its own boundary: edges of moved rings and crack faces that know the rest position, velocity and arc
 //!    length of the material at their ends. `outline`: a body without its cracks.
 //! 3. `boolean`: a fragment is where its own edges wind around a place at least once. An open crack in it takes one
-//!    off; where its faces overlap one is added, so cracks that are closed have no walls. Fragments may turn, fly
+//!    off; where its faces overlap one is added, so cracks that are closed have no walls, unless all are to have some
+//!    (`held_open`). Fragments may turn, fly
 //!    apart, touch and come to lie on each other as they like: each keeps its walls.
 //! 4. `slivers`: what is mere rounding goes.
 //! 5. `pinch`: contours that touch in a point are parted, so that the solid is manifold for every reader.
@@ -31,6 +32,7 @@ mod error;
 mod extrude;
 mod faces;
 mod glb;
+mod held_open;
 #[cfg(feature = "files")]
 mod manifest;
 mod mesh;

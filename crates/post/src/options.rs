@@ -1,7 +1,7 @@
 //! How a frame becomes meshes.
 
 use crate::error::PostError;
-use fissure_scene::{OutputSettings, Part, UpAxis};
+use fissure_scene::{OutputSettings, Part, UpAxis, Walls};
 
 /// How a frame becomes meshes. Made from [`OutputSettings`], then changed at will.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,6 +12,8 @@ pub struct PostOptions {
     pub crease_angle: f64,
     /// Polygons of less area are left out [m²].
     pub smallest_fragment: f64,
+    /// Which cracks inside a fragment have walls.
+    pub walls: Walls,
     /// What to make.
     pub parts: Vec<Part>,
     /// Up axis of formats that do not fix it.
@@ -25,6 +27,7 @@ impl From<&OutputSettings> for PostOptions {
             thickness: output.thickness,
             crease_angle: 30.0_f64.to_radians(),
             smallest_fragment: output.smallest_fragment,
+            walls: output.walls,
             parts: output.parts.clone(),
             up: output.up,
         }

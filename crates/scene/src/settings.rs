@@ -274,6 +274,18 @@ pub enum UpAxis {
     Z,
 }
 
+/// Which cracks inside a fragment have walls. Where fragments touch, each has its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "load", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Walls {
+    /// Where they are open: one that is closed cannot be seen.
+    #[default]
+    Open,
+    /// Everywhere: one that is closed is held open by a hair.
+    All,
+}
+
 /// What to write.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct OutputSettings {
@@ -287,4 +299,7 @@ pub struct OutputSettings {
     pub up: UpAxis,
     /// Fragments of less area than this are dropped [m²].
     pub smallest_fragment: f64,
+    /// Which cracks inside a fragment have walls.
+    #[serde(default)]
+    pub walls: Walls,
 }

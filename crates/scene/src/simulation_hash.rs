@@ -21,8 +21,8 @@ impl Scene {
             guides.into_iter().flatten().for_each(|guide| guide.for_each_mut(&mut |guide| guide.name.clear()));
         }
         scene.frames.last = scene.frames.first;
-        let OutputSettings { thickness, formats, parts, up, smallest_fragment } = &mut scene.output;
-        (*thickness, *smallest_fragment, *up) = (0.0, 0.0, Default::default());
+        let OutputSettings { thickness, formats, parts, up, smallest_fragment, walls } = &mut scene.output;
+        (*thickness, *smallest_fragment, *up, *walls) = (0.0, 0.0, Default::default(), Default::default());
         formats.clear();
         parts.clear();
         let mut hasher = Sha256::new();

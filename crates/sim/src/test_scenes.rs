@@ -69,6 +69,7 @@ pub(crate) fn free_body(region: Region, spacing: f64) -> Scene {
             parts: Vec::new(),
             up: UpAxis::Z,
             smallest_fragment: 0.0,
+            walls: Default::default(),
         },
     }
 }

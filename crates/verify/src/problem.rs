@@ -89,6 +89,7 @@ impl Problem {
                 parts: Vec::new(),
                 up: UpAxis::Z,
                 smallest_fragment: 0.0,
+                walls: Default::default(),
             },
         };
         Self { scene }

@@ -71,6 +71,7 @@ pub fn scene(region: Region) -> Scene {
             parts: vec![Part::Cracked],
             up: UpAxis::Z,
             smallest_fragment: 0.0,
+            walls: Default::default(),
         },
     }
 }

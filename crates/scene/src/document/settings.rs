@@ -207,6 +207,8 @@ pub struct OutputKeys {
     /// Fragments of less area than this in m² are dropped. Default: 0, none.
     #[schemars(transform = AREA.bounds())]
     pub smallest_fragment: f64,
+    /// Cracks inside a fragment with walls: `open` (default), or `all`, closed ones too.
+    pub walls: Walls,
 }
 
 impl Default for OutputKeys {
@@ -217,6 +219,7 @@ impl Default for OutputKeys {
             parts: vec![Part::Cracked],
             up: UpAxis::default(),
             smallest_fragment: 0.0,
+            walls: Walls::default(),
         }
     }
 }

@@ -64,6 +64,7 @@ pub(crate) fn plate(size: [f64; 2], cell_size: f64, frame_time: f64) -> Scene {
             parts: Vec::new(),
             up: UpAxis::Z,
             smallest_fragment: 0.0,
+            walls: Default::default(),
         },
     }
 }

@@ -103,6 +103,7 @@ impl<'d> Resolver<'d> {
             parts: keys.parts.clone(),
             up: keys.up,
             smallest_fragment: keys.smallest_fragment,
+            walls: keys.walls,
         })
     }
 }
