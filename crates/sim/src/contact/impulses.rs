@@ -11,7 +11,7 @@ use fissure_plane::Vector;
 use serde::{Deserialize, Serialize};
 
 /// Rounds through all meetings in a step, at most.
-const ROUNDS: usize = 8;
+const ROUNDS: usize = 32;
 
 /// No more rounds are needed when no impulse changes by more than this part of the largest.
 const CONVERGED: f64 = 1e-4;

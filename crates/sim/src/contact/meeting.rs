@@ -12,7 +12,7 @@ const PAST_END: f64 = 1e-3;
 /// part of it.
 const PAST_ROUND_END: f64 = 0.25;
 
-/// Rounds of Newton's iteration for that place: the equation is quadratic and nearly linear.
+/// Rounds of Newton's iteration for that place: the equation is nearly linear.
 const NEWTON_ROUNDS: usize = 4;
 
 /// Gaps wider than this, in cells, are not looked at; nor is what lies deeper than this within an edge, which is on the
@@ -85,22 +85,35 @@ pub(crate) fn meeting(
     Some(Meeting { ends, along, gap: away.dot(&normal), normal })
 }
 
-/// The meeting of `x` with an edge whose normal goes from one of `normals` to the other: where the normal points at
-/// `x`, so that the two impulses have one line and angular momentum stays; beside `along`, where the edge is nearest.
+/// The meeting of `x` with a round surface: the curve through the ends of an edge that has their `normals`, beside
+/// `along`, where the edge is nearest.
+///
+/// In the frame of the edge, in lengths of it, the curve is (t, y(t)) with Hermite's cubic y, zero at its ends
+/// and has the slopes that the normals ask for. The foot of `x` is where its tangent is across the way to `x`; the gap
+/// is the distance from there. So the normal is the gradient of the gap; with another one, vertices would sink in as
+/// they slide and pay nothing, and come out with work.
 fn on_round(ends: [u32; 2], normals: [Vector; 2], place: &[Point], x: Point, along: f64) -> Option<Meeting> {
     let [a, b] = ends.map(|end| place[end as usize]);
-    let (edge, away, turn) = (b - a, x - a, normals[1] - normals[0]);
-    // (away − s edge) × (normal + s turn) = 0.
-    let value = |s: f64| (away - edge * s).perp(&(normals[0] + turn * s));
-    let slope = |s: f64| (away - edge * s).perp(&turn) - edge.perp(&(normals[0] + turn * s));
-    let mut s = along;
+    let length = (b - a).norm();
+    let tangent = (b - a) / length;
+    let flat = Vector::new(tangent.y, -tangent.x);
+    let at = Vector::new((x - a).dot(&tangent), (x - a).dot(&flat)) / length;
+    let [first, last] = normals.map(|normal| -normal.dot(&tangent) / normal.dot(&flat));
+    let height = |t: f64| first * t * (1.0 - t).powi(2) - last * t.powi(2) * (1.0 - t);
+    let slope = |t: f64| first * (1.0 - t) * (1.0 - 3.0 * t) - last * t * (2.0 - 3.0 * t);
+    let bend = |t: f64| first * (6.0 * t - 4.0) + last * (6.0 * t - 2.0);
+    let mut t = along;
     for _ in 0..NEWTON_ROUNDS {
-        let step = value(s) / slope(s);
+        let off = at.y - height(t);
+        let step = (at.x - t + off * slope(t)) / (off * bend(t) - 1.0 - slope(t).powi(2));
         // Off the edge by so much the next one goes on much the same.
-        s = if step.is_finite() { (s - step).clamp(-PAST_ROUND_END, 1.0 + PAST_ROUND_END) } else { s };
+        t = if step.is_finite() { (t - step).clamp(-PAST_ROUND_END, 1.0 + PAST_ROUND_END) } else { t };
     }
-    let normal = (normals[0] + turn * s).try_normalize(0.0)?;
-    Some(Meeting { ends, along: s, gap: (away - edge * s).dot(&normal), normal })
+    let normal = (flat - tangent * slope(t)).try_normalize(0.0)?;
+    let gap = (x - (a + (tangent * t + flat * height(t)) * length)).dot(&normal);
+    // Both impulses on one line, so that angular momentum stays.
+    let along = at.x + at.y * slope(t);
+    Some(Meeting { ends, along, gap, normal })
 }
 
 /// The normal of a corner towards what is `away` from it.
@@ -151,6 +164,35 @@ mod tests {
                 let sign = if surface.vertex(*vertex).body == 1 { 1.0 } else { -1.0 };
                 assert!(m.normal.dot(&direction) * sign > 0.9, "{turn} {m:?}");
             }
+        }
+    }
+
+    /// Truth: the difference quotient. Whatever slides over an arc, with edges of any lengths, does no work.
+    #[test]
+    fn the_normal_is_the_gradient_of_the_gap() {
+        let angles = [0.0, 0.1, 0.13, 0.22, 0.4, 0.45, 0.6, 0.8];
+        let arc = |angle: f64| Point::new(-3.0 * angle.sin(), 3.0 * angle.cos());
+        let mut points: Vec<Point> = angles.into_iter().map(arc).collect();
+        points.extend([Point::new(-5.0, -5.0), Point::new(5.0, -5.0)]);
+        let gap_at = |place: Point| {
+            let mut surface = Surface::default();
+            add_ring(&mut surface, 0, &points);
+            add_ring(&mut surface, 1, &[place, place + Vector::new(0.4, 2.0), place + Vector::new(-0.4, 2.0)]);
+            let all = surface.places_at_rest();
+            let near = Neighbours::find(&surface, &all, 0.4, true);
+            let vertex = points.len() as u32;
+            near.iter()
+                .find(|(v, _)| *v == vertex)
+                .and_then(|(v, edges)| meeting(&surface, &all, v, edges, 0.4))
+                .unwrap()
+        };
+        for k in 0..60 {
+            let angle = 0.12 + 0.01 * f64::from(k);
+            let place = arc(angle) * (1.0 + 0.02 * f64::from(k % 5));
+            let found = gap_at(place);
+            let quotient = |by: Vector| (gap_at(place + by * 1e-5).gap - gap_at(place - by * 1e-5).gap) / 2e-5;
+            let gradient = Vector::new(quotient(Vector::x()), quotient(Vector::y()));
+            assert!((gradient - found.normal).norm() < 1e-4, "{angle} {gradient} {found:?}");
         }
     }
 

@@ -5,7 +5,7 @@ use super::probe::Probe;
 use super::probes::Probes;
 use crate::contact::surface::Surface;
 use crate::crack::cracks::{Cracks, TipId};
-use fissure_plane::orientation;
+use fissure_plane::{distance_to_segment, orientation};
 use fissure_scene::{CrackEnd, End, Scene};
 
 /// Two places nearer to each other than this, in cells, are one.
@@ -50,8 +50,9 @@ impl Surfaces {
         let mut all = Self::default();
         all.add_rings(scene, probes);
         all.add_faces(scene, probes, cracks);
+        let mut joined = Vec::new();
         for id in cracks.ids() {
-            all.join_at_junction(scene, cracks, id);
+            all.join_at_junction(scene, cracks, id, &mut joined);
         }
         all
     }
@@ -142,30 +143,50 @@ impl Surfaces {
     }
 
     /// Joins the faces of a crack that begins or ends on another one to the face of that one on its side, whose own
-    /// vertex there would belong to one of two corners only.
-    fn join_at_junction(&mut self, scene: &Scene, cracks: &Cracks, id: TipId) -> Option<()> {
+    /// vertex there, if it has one, would belong to one of two corners only. `joined`: the two corners of those before.
+    fn join_at_junction(
+        &mut self,
+        scene: &Scene,
+        cracks: &Cracks,
+        id: TipId,
+        joined: &mut Vec<[u32; 2]>,
+    ) -> Option<()> {
         let CrackEnd::Junction { crack: trunk } = cracks.end(id) else { return None };
         let branch = &cracks.of(id).points;
         let points = &cracks.get(trunk as usize)?.points;
         let (at, last) = (cracks.position(id), branch.len() - 1);
-        let (end, beside) = if id.end == End::Start { (0, 1) } else { (last, last - 1) };
-        let k = points.iter().position(|p| (p - at).norm() < SAME * scene.cell_size)?;
-        if k == 0 || k + 1 == points.len() {
-            return None;
-        }
-        let side = orientation(points[k - 1], points[k], branch[beside])
-            + orientation(points[k], points[k + 1], branch[beside]);
-        let face = usize::from(side < 0.0);
-        let of_trunk = &self.faces[trunk as usize][face];
-        // On the way along the trunk with the material on the left.
-        let (before, after) =
-            if face == 0 { (of_trunk[k - 1], of_trunk[k + 1]) } else { (of_trunk[k + 1], of_trunk[k - 1]) };
-        let corner = of_trunk[k];
+        let (end, beside) = if id.end == End::Start { (0, branch[1]) } else { (last, branch[last - 1]) };
         let [above, below] = [0, 1].map(|face: usize| self.faces[id.crack][face][end]);
         let [first, second] = if id.end == End::Start { [above, below] } else { [below, above] };
-        self.surface.unlink(corner);
+        let same = SAME * scene.cell_size;
+        let (before, after) = if let Some(k) = points.iter().position(|p| (p - at).norm() < same) {
+            if k == 0 || k + 1 == points.len() {
+                return None;
+            }
+            let side = orientation(points[k - 1], points[k], beside) + orientation(points[k], points[k + 1], beside);
+            let face = usize::from(side < 0.0);
+            let of_trunk = &self.faces[trunk as usize][face];
+            self.surface.unlink(of_trunk[k]);
+            // On the way along the trunk with the material on the left.
+            if face == 0 { (of_trunk[k - 1], of_trunk[k + 1]) } else { (of_trunk[k + 1], of_trunk[k - 1]) }
+        } else {
+            let distance = |k: &usize| distance_to_segment(at, points[*k], points[k + 1]);
+            let k = (0..points.len() - 1).min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+            let face = usize::from(orientation(points[k], points[k + 1], beside) < 0.0);
+            let mut before = self.faces[trunk as usize][face][k + face];
+            // Others that end on this segment, before this one.
+            let from = self.surface.vertex(before).rest;
+            let is_before = |v: u32| (self.surface.vertex(v).rest - from).norm() < (at - from).norm();
+            while let Some([_, corner]) =
+                joined.iter().find(|[corner, _]| self.surface.next(before) == Some(*corner) && is_before(*corner))
+            {
+                before = *corner;
+            }
+            (before, self.surface.next(before)?)
+        };
         self.surface.link(before, first);
         self.surface.link(second, after);
+        joined.push([first, second]);
         Some(())
     }
 }
@@ -181,4 +202,75 @@ pub(super) fn can_meet(scene: &Scene) -> bool {
     };
     let is_convex_body = |body: &fissure_scene::Body| body.region.holes.is_empty() && is_convex(&body.region.exterior);
     scene.bodies.len() > 1 || !scene.cracks.is_empty() || !scene.bodies.iter().all(is_convex_body)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::Total;
+    use super::*;
+    use crate::particles::Particles;
+    use crate::test_scenes;
+    use fissure_plane::signed_area;
+    use std::sync::Arc;
+
+    /// A square of four metres in cells of 0.1 m, cut by cracks that end on the first one.
+    fn cut_square(cracks: &[&[[f64; 2]]]) -> (Scene, Total, Cracks) {
+        let mut scene = test_scenes::free_body(test_scenes::rectangle([0.0, 0.0], [4.0, 4.0]), 0.1);
+        scene.solver.formulation = fissure_scene::Formulation::Total;
+        cracks.iter().for_each(|points| test_scenes::add_crack(&mut scene, points));
+        let mut cracks = Cracks::of_scene(&scene);
+        for branch in 1..cracks.len() {
+            cracks.set_end(TipId::new(branch, End::Start), CrackEnd::Junction { crack: 0 });
+        }
+        let total = Total::new(&scene, Arc::new(Particles::fill(&scene).unwrap()), &cracks).unwrap();
+        (scene, total, cracks)
+    }
+
+    /// Truth: the drawing. Two cracks end beside each other on one segment of a third one, and another one on its other
+    /// side: the surfaces are the outlines of the five parts.
+    #[test]
+    fn faces_join_into_the_outlines_of_the_parts() {
+        let (scene, total, cracks) = cut_square(&[
+            &[[0.0, 2.03], [4.0, 2.03]],
+            &[[1.34, 2.03], [1.9, 4.0]],
+            &[[1.31, 2.03], [0.9, 4.0]],
+            &[[1.33, 2.03], [2.2, 0.0]],
+        ]);
+        let surface = Surfaces::new(&scene, &total.probes, &cracks).surface;
+        let mut areas = Vec::new();
+        let mut seen = vec![false; surface.len()];
+        for start in 0..surface.len() as u32 {
+            let mut ring = Vec::new();
+            let mut at = Some(start);
+            while let Some(vertex) = at.filter(|&v| !std::mem::replace(&mut seen[v as usize], true)) {
+                ring.push(surface.vertex(vertex).rest);
+                at = surface.next(vertex);
+            }
+            if at == Some(start) && ring.len() > 1 {
+                areas.push(signed_area(&ring));
+            }
+        }
+        areas.sort_by(f64::total_cmp);
+        let (below, above) = (0.5 * 2.03, 0.5 * 1.97);
+        let expected =
+            [above * 1.03, above * (1.31 + 0.9), below * (1.33 + 2.2), below * (2.67 + 1.8), above * (2.66 + 2.1)];
+        assert_eq!(areas.len(), expected.len(), "{areas:?}");
+        assert!(areas.iter().zip(expected).all(|(area, expected)| (area - expected).abs() < 1e-9), "{areas:?}");
+    }
+
+    /// Truth: the drawing. At whatever angle a crack ends on another one, both its faces end on its own side of that.
+    #[test]
+    fn faces_end_on_their_side_of_the_other_crack() {
+        for x in [0.5, 1.2, 1.9, 2.2, 3.1, 3.7] {
+            let (_, total, _) = cut_square(&[&[[0.0, 2.03], [2.01, 2.03], [4.0, 2.03]], &[[2.01, 2.03], [x, 3.5]]]);
+            for face in &total.probes.faces[1] {
+                for &(field, _) in &face[0].entries {
+                    let crosses = total.lattice.fields().crossed(field as usize).iter().any(|c| c.0 == 0);
+                    let is_below = total.lattice.position(field as usize).y < 2.03;
+                    assert_eq!(crosses, is_below, "{x}");
+                }
+            }
+        }
+    }
 }
