@@ -28,6 +28,8 @@ fn the_crack_crosses_the_plate_and_leaves_two_pieces() {
     assert_eq!(frame.cracks[0].end, CrackEnd::Mouth);
     // From the top edge to the bottom edge, exactly.
     assert_eq!(frame.cracks[0].rest.last().unwrap().y, -10.0);
+    // And down the axis of symmetry, exactly.
+    assert!(frame.cracks[0].rest.iter().all(|p| p.x == 0.0), "{:?}", frame.cracks[0].rest);
     let mut pieces = frame.particles.piece.clone();
     pieces.sort_unstable();
     pieces.dedup();

@@ -6,7 +6,11 @@ use super::barrier::{beside, first_barrier};
 use super::heading::way;
 use crate::crack::assessment::Assessment;
 use crate::crack::cracks::{Cracks, TipId};
-use fissure_scene::{CrackEnd, Scene, TipState};
+use fissure_scene::{CrackEnd, Scene, TipState, Vector};
+
+/// A turn by less than this [rad] is rounding. A crack that rounding turned off an axis of symmetry would pass
+/// nodes and particles on it on sides that rounding chooses, and nothing would be symmetric from there on.
+const NO_TURN: f64 = 1e-9;
 
 /// The next increment of a tip that wants to grow.
 pub(crate) fn next_increment(
@@ -44,7 +48,7 @@ pub(crate) fn next_increment(
         let state = if target.is_end { TipState::GuideEnded } else { TipState::Growing };
         return Some(Advance { points: vec![target.at], end: CrackEnd::Tip, state });
     }
-    let toward = way(cracks, id, assessed, scene);
+    let toward = straight_on(way(cracks, id, assessed, scene), cracks.last_direction(id));
     if let Some(hit) = first_barrier(cracks, id, region, from, from + toward * (step + LAST_LIGAMENT * h)) {
         return Some(hit.finish(Vec::new(), from));
     }
@@ -54,4 +58,9 @@ pub(crate) fn next_increment(
         return Some(hit.finish(Vec::new(), from));
     }
     Some(Advance { points: vec![from + toward * step], end: CrackEnd::Tip, state: TipState::Growing })
+}
+
+/// The direction `toward`, or that of the crack where they differ by rounding.
+fn straight_on(toward: Vector, straight: Vector) -> Vector {
+    if toward.perp(&straight).atan2(toward.dot(&straight)).abs() < NO_TURN { straight } else { toward }
 }
