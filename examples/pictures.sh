@@ -11,6 +11,7 @@ shots() {
         pull | pull-rotated | pull-guided) echo "8 16 48" ;;
         drop-*) echo "24 28 45" ;;
         logo) echo "1 48" ;;
+        wall-bolt) echo "12 18 48" ;;
         three-holes) echo "20 48" ;;
         two-materials) echo "14 48" ;;
         painted) echo "20 32 48" ;;
@@ -29,7 +30,7 @@ view() {
 }
 
 if [ "$#" -eq 0 ]; then set -- pull pull-rotated pull-guided drop-jello drop-snow drop-pmma drop-glass logo \
-    three-holes glass-impact mud painted two-materials; fi
+    wall-bolt three-holes glass-impact mud painted two-materials; fi
 for name in "$@"; do
     cargo run --release --quiet -- run "examples/$name/scene.toml" --formats glb --quiet
     files=()

@@ -77,6 +77,24 @@ fn letters_crack_along_their_guides() {
 }
 
 #[test]
+fn a_bolt_throws_out_branches_along_their_guides() {
+    let (scene, frame) = solve("wall-bolt", &["grid.particle_spacing=0.05"]);
+    let mut paths = vec![scene.cracks[0].points.clone()];
+    let mut guide = scene.cracks[0].end_guide.clone().unwrap();
+    guide.for_each_mut(&mut |guide| paths.push(guide.points.clone()));
+    assert_eq!((paths.len(), frame.cracks.len()), (5, 4));
+    for crack in &frame.cracks {
+        let off = |p: Point| paths.iter().map(|path| distance(p, path)).fold(f64::INFINITY, f64::min);
+        let worst = crack.rest.iter().map(|&p| off(p)).fold(0.0, f64::max);
+        assert!(worst <= 0.125 * scene.cell_size, "crack {}: a point lies {worst} m off the guides", crack.crack);
+    }
+    let trunks: Vec<CrackEnd> = frame.cracks.iter().map(|crack| crack.start).collect();
+    let on = |crack: u32| CrackEnd::Junction { crack };
+    assert_eq!(trunks, [CrackEnd::Mouth, on(0), on(1), on(0)]);
+    assert_eq!([frame.cracks[0].end, frame.cracks[1].end], [CrackEnd::Mouth; 2]);
+}
+
+#[test]
 fn the_beam_cracks_into_its_middle_hole() {
     let (scene, frame) = solve("three-holes", &["grid.particle_spacing=0.003175"]);
     let end = *frame.cracks[0].rest.last().unwrap();
