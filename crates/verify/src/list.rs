@@ -19,6 +19,8 @@ pub const CASES: &[Case] = &[
     cases::strip::CASE,
     cases::impacted_notch::CASE,
     cases::branching_plate::CASE,
+    cases::mirrored_branching::CASE,
+    cases::pull_price::CASE,
     cases::kink_angles::CASE,
     cases::shear_notch::CASE,
     cases::wing_cracks::CASE,
