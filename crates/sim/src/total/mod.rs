@@ -12,7 +12,6 @@
 //! has grown ([`near::Near`]).
 
 mod colliders;
-mod constraints;
 mod contact;
 mod cut;
 mod cutting;

@@ -1,35 +1,26 @@
 //! Supports: prescribed velocities of edges and of fields.
 
-use super::constraints::{Constraint, ConstraintSystem};
-use super::edge_means::{Chain, EdgeMean};
+use super::edge_means::means;
 use super::lattice::Lattice;
 use super::motion::Motion;
 use super::near::Near;
 use crate::SimulationError;
+use crate::boundary::constraints::{ConstraintSystem, Held, systems};
+use crate::boundary::edges::{Chain, EdgeMean, edges_of};
 use crate::boundary::selector::Selector;
-use crate::boundary::supports::{Reaction, contradiction, prescribed};
+use crate::boundary::supports::{Reaction, prescribed};
 use fissure_plane::{Point, Vector};
-use fissure_scene::{OutlineStretch, Scene, Selection, Support};
-use std::collections::BTreeMap;
+use fissure_scene::{Scene, Selection, Support};
 
 /// What the supports of the scene hold.
 #[derive(Debug)]
 pub(super) struct Supports {
     of_support: Vec<Held>,
+    /// The edges of each.
+    chains: Vec<Vec<Chain>>,
     /// What is held along x and along y.
     systems: [ConstraintSystem; 2],
     held: HeldFields,
-}
-
-/// What one support holds.
-#[derive(Debug)]
-struct Held {
-    /// Its edges.
-    chains: Vec<Chain>,
-    /// Means of the velocity along these.
-    means: Vec<EdgeMean>,
-    /// Fields that it holds as a whole.
-    fields: Vec<u32>,
 }
 
 impl Supports {
@@ -41,10 +32,12 @@ impl Supports {
         let bodies = body_of_fields(scene, lattice);
         let places = lattice.places_of_fields().map(|place| lattice.grid.place(place));
         let fields: Vec<(usize, Point)> = places.enumerate().collect();
+        let chains: Vec<Vec<Chain>> =
+            scene.supports.iter().map(|support| edges_of(scene, &support.selection)).collect();
         let held = |(index, support): (usize, &Support)| {
             let selector = Selector::new(scene, &support.selection);
-            let chains = Chain::of(scene, &edges_of(&selector, scene));
-            let means: Vec<EdgeMean> = chains.iter().flat_map(|chain| chain.means(lattice)).collect();
+            let chains = &chains[index];
+            let means: Vec<EdgeMean> = chains.iter().flat_map(|chain| means(chain, lattice)).collect();
             let is_edge = matches!(support.selection, Selection::Edge { .. } | Selection::Outline(_));
             let held = |&&(field, node): &&(usize, Point)| holds(&selector, lattice, field, node, &bodies);
             // Of a side that no edge lies along: the nodes nearer to it than half a cell.
@@ -53,12 +46,12 @@ impl Supports {
             if means.is_empty() && fields.is_empty() {
                 return Err(lattice.particles.no_particle("support", index, &support.selection).into());
             }
-            Ok(Held { chains, means, fields })
+            Ok(Held { means, fields })
         };
         let of_support = scene.supports.iter().enumerate().map(held).collect::<Result<Vec<_>, SimulationError>>()?;
-        let systems = systems(scene, lattice, &of_support);
+        let systems = systems(&scene.supports, &of_support, &lattice.inverse_mass);
         let held = HeldFields::of(&systems);
-        Ok(Self { of_support, systems, held })
+        Ok(Self { of_support, chains, systems, held })
     }
 
     /// The same after a change: what is elsewhere is held as before.
@@ -69,13 +62,13 @@ impl Supports {
         let bodies = body_of_fields(scene, lattice);
         let fields = near.fields(lattice);
         let mut has_changed = false;
-        for (held, support) in self.of_support.iter_mut().zip(&scene.supports) {
-            if held.chains.iter().any(|chain| near.widened(0.0).any(|(low, high)| chain.meets(low, high))) {
+        for ((held, chains), support) in self.of_support.iter_mut().zip(&self.chains).zip(&scene.supports) {
+            if chains.iter().any(|chain| near.widened(0.0).any(|(low, high)| chain.meets(low, high))) {
                 has_changed = true;
-                held.means = held.chains.iter().flat_map(|chain| chain.means(lattice)).collect();
+                held.means = chains.iter().flat_map(|chain| means(chain, lattice)).collect();
             }
             let is_edge = matches!(support.selection, Selection::Edge { .. } | Selection::Outline(_));
-            if is_edge && !held.chains.is_empty() {
+            if is_edge && !chains.is_empty() {
                 continue;
             }
             let selector = Selector::new(scene, &support.selection);
@@ -88,7 +81,7 @@ impl Supports {
             has_changed |= kept < before || kept < held.fields.len();
         }
         if has_changed {
-            self.systems = systems(scene, lattice, &self.of_support);
+            self.systems = systems(&scene.supports, &self.of_support, &lattice.inverse_mass);
             self.held = HeldFields::of(&self.systems);
         }
     }
@@ -165,14 +158,6 @@ impl HeldFields {
     }
 }
 
-/// The edges that a selection holds: those that it names, or that lie in its region.
-fn edges_of(selector: &Selector<'_>, scene: &Scene) -> Vec<OutlineStretch> {
-    match selector {
-        Selector::Side(_) | Selector::Outline(_) | Selector::Region { .. } => selector.parts(scene),
-        Selector::All | Selector::Bodies(_) | Selector::Near { .. } => Vec::new(),
-    }
-}
-
 /// Whether a support holds a field whose node is at `place` at rest.
 ///
 /// A node beside a crack has a field for the material on each side of it. The one across the crack is held only if the
@@ -182,39 +167,6 @@ fn holds(selector: &Selector<'_>, lattice: &Lattice, field: usize, place: Point,
     lattice.mass()[field] > 0.0
         && selector.selects(place, body, 0.499 * h, h)
         && (lattice.fields().crossed(field).is_empty() || has_selected_particle(selector, lattice, field, place))
-}
-
-/// What is held along each axis. Where two supports want different velocities of a field, the later one has it.
-fn systems(scene: &Scene, lattice: &Lattice, of_support: &[Held]) -> [ConstraintSystem; 2] {
-    let supports = &scene.supports;
-    [0, 1].map(|axis| {
-        let mut constraints = Vec::new();
-        // The last supports that have each field.
-        let mut holders: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-        for (index, held) in of_support.iter().enumerate().rev().filter(|(i, _)| supports[*i].velocity[axis].is_some())
-        {
-            let (support, start) = (index as u32, constraints.len());
-            let later: Vec<u32> = (support + 1..supports.len() as u32)
-                .filter(|&other| contradiction(&supports[index], &supports[other as usize], axis).is_some())
-                .collect();
-            let is_taken = |&(field, _): &(u32, f64)| {
-                holders.get(&field).is_some_and(|of| of.iter().any(|other| later.contains(other)))
-            };
-            let fields = held.fields.iter().map(|&field| vec![(field, 1.0)]);
-            for entries in held.means.iter().cloned().chain(fields) {
-                if !entries.iter().any(is_taken) {
-                    constraints.push(Constraint { support, entries });
-                }
-            }
-            for (field, _) in constraints[start..].iter().flat_map(|c| &c.entries) {
-                let of = holders.entry(*field).or_default();
-                if of.last() != Some(&support) {
-                    of.push(support);
-                }
-            }
-        }
-        ConstraintSystem::new(constraints, &lattice.inverse_mass)
-    })
 }
 
 /// Whether a support selects one of the particles of a field whose node is at `place` at rest.

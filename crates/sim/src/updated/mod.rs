@@ -19,12 +19,14 @@
 //! | `Loads`, `Supports`, `Colliders`, `Contacts` | what acts on fields and particles |
 
 mod affine_flip;
+mod beside;
 mod colliders;
 mod contact;
 mod cut;
 mod faces;
 mod gather;
 mod grid_to_particles;
+mod held_edge;
 mod lattice;
 mod light_fields;
 mod loads;

@@ -31,5 +31,7 @@ pub(super) fn remapped_velocities(
         obstacles.iter().fold(v, |v, o| o.resolve(v, point.position))
     });
     supports.prescribe(from.setup, &mut velocities, step);
-    to.mean(&velocities, &from.nodes.mass)
+    let mut remapped = to.mean(&velocities, &from.nodes.mass);
+    supports.hold_remapped(from.setup, step, &from.nodes.mass, &mut remapped);
+    remapped
 }

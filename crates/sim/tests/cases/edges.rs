@@ -91,6 +91,19 @@ fn a_bar_is_strained_alike_at_any_place_and_turn() {
     }
 }
 
+/// Truth: Hooke, in the updated formulation. Measured: 1.2 to 2.9 %, most at a turn.
+#[test]
+fn a_bar_of_moving_particles_is_strained_alike() {
+    for k in 0..3 {
+        let length = CELL * (12.0 + scattered(2 * k));
+        let width = CELL * (6.0 + scattered(2 * k + 1));
+        let mut bar = moved(bar(if k < 2 { 0.0 } else { 6.3 * scattered(k) }, length, width));
+        bar.scene = crate::common::updated(bar.scene);
+        let error = error(&bar);
+        assert!(error.abs() < 0.04, "{k}: {error}");
+    }
+}
+
 /// Truth: equilibrium and Hooke. In the end the two supports pull on a resting bar with E ε W along its axis, one
 /// against the other; their work is all that was done. Supports of the updated formulation hold particles, by which the
 /// bar is softer: there one against the other.
@@ -107,7 +120,7 @@ fn reactions_balance_and_are_the_stress_times_the_width() {
         let expected = bar.axis * (YOUNG * STRAIN * bar.width);
         assert!((a.force + b.force).norm() < 1e-3 * expected.norm(), "{} {}", a.force, b.force);
         let off = (a.force - expected).norm() / expected.norm();
-        assert!(in_updated || off < 3e-3, "{} {expected}", a.force);
+        assert!(off < if in_updated { 1.5e-2 } else { 3e-3 }, "{} {expected}", a.force);
         assert!((a.work + b.work - frame.energies.external_work).abs() < 1e-9 * a.work);
     }
 }

@@ -1,6 +1,8 @@
 //! The updated Lagrangian formulation under loads, supports and colliders, against closed forms.
 
-use crate::common::{DENSITY, POISSON, YOUNG, add_crack, add_traction, finite, hold, plate, pull, run, updated};
+use crate::common::{
+    DENSITY, POISSON, YOUNG, add_crack, add_traction, finite, hold, plate, pull, rectangle, run, updated,
+};
 use fissure_scene::{
     BoxSide, Collider, ColliderShape, Contact, Frame, Point, Pose, Scene, Selection, Transfer, Vector,
 };
@@ -46,13 +48,14 @@ fn a_floor_carries_the_weight_of_a_block() {
     assert!((0.0..0.125 * weight / YOUNG).contains(&(1.0 / 32.0 - lowest)), "{lowest}");
 }
 
-/// Truth: the prescription, to round-off: velocity and way of the held layer.
+/// Truth: the prescription, to round-off: velocity and way of the particles in a held region.
 #[test]
 fn prescribed_velocities_are_kept() {
     for transfer in [Transfer::Apic, Transfer::Pic, Transfer::Flip(1.0)] {
         let mut scene = plate([4.0, 2.0], 0.25, 1e-3);
-        hold(&mut scene, edge(BoxSide::Left), [Some(-0.3), Some(0.1)]);
-        hold(&mut scene, edge(BoxSide::Right), [Some(0.0), None]);
+        let layer = |from: f64, to: f64| Selection::Region(rectangle([from, -0.1], [to, 2.1]));
+        hold(&mut scene, layer(-0.1, 0.12), [Some(-0.3), Some(0.1)]);
+        hold(&mut scene, layer(3.88, 4.1), [Some(0.0), None]);
         let mut scene = updated(scene);
         scene.solver.transfer = transfer;
         let mut simulation = Simulation::new(&scene).unwrap();

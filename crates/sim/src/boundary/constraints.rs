@@ -5,15 +5,27 @@
 //! from a Cholesky decomposition of W M⁻¹ Wᵀ within its envelope: constraints are in the order of their places along an
 //! edge, so that each is tied to few before it.
 
+use super::edges::EdgeMean;
+use super::supports::contradiction;
+use fissure_scene::Support;
 use std::collections::BTreeMap;
 
 /// A mean of velocities along one axis that is prescribed.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Constraint {
+pub(crate) struct Constraint {
     /// Who prescribes it.
-    pub(super) support: u32,
+    pub(crate) support: u32,
     /// (field, weight); weights add up to 1.
-    pub(super) entries: Vec<(u32, f64)>,
+    pub(crate) entries: Vec<(u32, f64)>,
+}
+
+/// What one support holds.
+#[derive(Debug, Default)]
+pub(crate) struct Held {
+    /// Means of the velocity along its edges.
+    pub(crate) means: Vec<EdgeMean>,
+    /// Fields that it holds as a whole.
+    pub(crate) fields: Vec<u32>,
 }
 
 /// A constraint that says no more than those before it, but for this part of its own, is left out.
@@ -21,7 +33,7 @@ const DEPENDENT: f64 = 1e-9;
 
 /// Constraints along one axis.
 #[derive(Debug, Clone, Default)]
-pub(super) struct ConstraintSystem {
+pub(crate) struct ConstraintSystem {
     /// Those of a single field each.
     fixed: Vec<Constraint>,
     /// The others. Fields that are fixed stand in them as if they had no end of mass.
@@ -53,7 +65,7 @@ impl EnvelopeRow {
 impl ConstraintSystem {
     /// Prepares `constraints` for fields of these inverse masses [m/kg]. Of several that say the same, the first ones
     /// are kept.
-    pub(super) fn new(constraints: Vec<Constraint>, inverse_mass: &[f64]) -> Self {
+    pub(crate) fn new(constraints: Vec<Constraint>, inverse_mass: &[f64]) -> Self {
         let mut system = Self::default();
         let mut is_fixed = BTreeMap::new();
         for constraint in constraints.iter().filter(|c| c.entries.len() == 1) {
@@ -111,18 +123,18 @@ impl ConstraintSystem {
     }
 
     /// Whether nothing is held.
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.fixed.is_empty() && self.means.is_empty()
     }
 
     /// The fields that it is about; some several times.
-    pub(super) fn fields(&self) -> impl Iterator<Item = u32> {
+    pub(crate) fn fields(&self) -> impl Iterator<Item = u32> {
         self.fixed.iter().chain(&self.means).flat_map(|c| c.entries.iter().map(|&(field, _)| field))
     }
 
     /// Makes the means what `prescribed` gives of each support [m/s]. Calls `acted` with each constraint and its
     /// impulse [N s/m].
-    pub(super) fn apply(
+    pub(crate) fn apply(
         &self,
         prescribed: impl Fn(u32) -> f64,
         mass: &[f64],
@@ -164,6 +176,38 @@ impl ConstraintSystem {
             }
         }
     }
+}
+
+/// What is held along each axis. Where two supports want different velocities of a field, the later one has it.
+pub(crate) fn systems(supports: &[Support], of_support: &[Held], inverse_mass: &[f64]) -> [ConstraintSystem; 2] {
+    [0, 1].map(|axis| {
+        let mut constraints = Vec::new();
+        // The last supports that have each field.
+        let mut holders: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        for (index, held) in of_support.iter().enumerate().rev().filter(|(i, _)| supports[*i].velocity[axis].is_some())
+        {
+            let (support, start) = (index as u32, constraints.len());
+            let later: Vec<u32> = (support + 1..supports.len() as u32)
+                .filter(|&other| contradiction(&supports[index], &supports[other as usize], axis).is_some())
+                .collect();
+            let is_taken = |&(field, _): &(u32, f64)| {
+                holders.get(&field).is_some_and(|of| of.iter().any(|other| later.contains(other)))
+            };
+            let fields = held.fields.iter().map(|&field| vec![(field, 1.0)]);
+            for entries in held.means.iter().cloned().chain(fields) {
+                if !entries.iter().any(is_taken) {
+                    constraints.push(Constraint { support, entries });
+                }
+            }
+            for (field, _) in constraints[start..].iter().flat_map(|c| &c.entries) {
+                let of = holders.entry(*field).or_default();
+                if of.last() != Some(&support) {
+                    of.push(support);
+                }
+            }
+        }
+        ConstraintSystem::new(constraints, inverse_mass)
+    })
 }
 
 #[cfg(test)]

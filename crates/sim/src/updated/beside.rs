@@ -1,0 +1,45 @@
+//! Places of the material beside a particle, where edges are held.
+
+use super::lattice::Lattice;
+use super::points::Points;
+use super::setup::Setup;
+use crate::boundary::loads::nearest;
+use fissure_scene::{Matrix, Point, Vector};
+
+/// A place of the material that goes with a particle.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Beside {
+    particle: u32,
+    /// From the particle at rest [m].
+    offset: Vector,
+}
+
+impl Beside {
+    /// A place at rest beside the nearest particle of `layer`; none of no particles.
+    pub(super) fn nearest(setup: &Setup, layer: &[u32], place: Point) -> Option<Self> {
+        let particle = nearest(&setup.particles, layer.iter().copied(), place)?;
+        Some(Self { particle, offset: place - setup.particles.rest[particle as usize] })
+    }
+
+    /// Calls `visit` with (field, w + ∇w · r), r = F (X − X_p) the way from the particle to where the place is now: so
+    /// weighted, velocities of the fields add up to the one that the place has as the particle moves and deforms. Not
+    /// longer than a cell, be the material beyond it never so much torn.
+    pub(super) fn for_each_entry(&self, points: &Points, lattice: &Lattice, mut visit: impl FnMut(usize, f64)) {
+        let p = self.particle as usize;
+        let place = points.point[p].position;
+        let way = (Matrix::identity() + points.total_gradient(p)) * self.offset;
+        let way = way.cap_magnitude(lattice.grid.cell_size);
+        if let Some(entries) = lattice.stencils.of(p) {
+            entries.iter().for_each(|e| visit(e.field as usize, e.weight + e.gradient.dot(&way)));
+            return;
+        }
+        let stencil = lattice.stencil(place);
+        let nodes = lattice.grid.stencil(&stencil);
+        for (b, a) in (0..stencil.width).flat_map(|b| (0..stencil.width).map(move |a| (b, a))) {
+            // Those of a particle all exist.
+            if let Some(node) = nodes.at(a, b) {
+                visit(node, stencil.weight(a, b) + stencil.weight_gradient(a, b).dot(&way));
+            }
+        }
+    }
+}
