@@ -296,6 +296,12 @@ pub enum LoadKind {
     Force(Vector),
     /// Force per area of the selected edge [Pa]; needs [`Selection::Edge`] or [`Selection::Outline`].
     Traction(Vector),
+    /// Pressure on the selected edges [Pa]: pushes into the material, along the normal of the edge as it is then.
+    /// Needs [`Selection::Edge`] or [`Selection::Outline`], or takes all outlines in a region or of bodies.
+    Pressure(f64),
+    /// Pressure [Pa] on both faces of some cracks (numbers), on what they grow and on what branches off them; pushes
+    /// into the material, along the normals of the faces as they are then. The selection does not count.
+    FacePressure(Vec<usize>, f64),
     /// Force on the particle nearest to each point: (place [m], force per unit thickness [N/m]).
     PerPoint(Vec<(Point, Vector)>),
 }

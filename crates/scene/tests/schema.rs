@@ -133,6 +133,7 @@ fn with_company(set: &str) -> String {
         ("toughness.0.max=", "toughness=[{ image = 'a.png', min = [-10, -10], max = [#, 1] }]"),
         ("flaws.0.density=", "flaws=[{ length = 1, density = # }]"),
         ("load.0.traction=", "load=[{ select = { edge = 'left' }, traction = [#, 0] }]"),
+        ("load.0.pressure=", "load=[{ select = { edge = 'left' }, pressure = # }]"),
         ("load.0.per_point.0.at=", "load=[{ per_point = [{ at = [#, 0], force = [0, 0] }] }]"),
         ("support.0.displacement_x=", "support=[{ displacement_x = #, curve = [[0, 0], [1e8, 1]] }]"),
         ("support.0.displacement_y=", "support=[{ displacement_y = #, curve = [[0, 0], [1e8, 1]] }]"),

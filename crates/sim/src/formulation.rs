@@ -67,6 +67,7 @@ pub(crate) fn expected_strain(scene: &Scene, elastic: &[Elastic]) -> f64 {
         let factor = if load.curve.points.is_empty() { 1.0 } else { most };
         let stress = match &load.kind {
             LoadKind::Traction(t) => t.norm(),
+            LoadKind::Pressure(p) | LoadKind::FacePressure(_, p) => p.abs(),
             LoadKind::Force(f) => f.norm() / size,
             LoadKind::PerPoint(values) => values.iter().map(|v| v.1.norm()).sum::<f64>() / size,
         };

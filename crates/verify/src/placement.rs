@@ -232,6 +232,7 @@ impl Placement {
         load.selection = self.selection(&load.selection, scene);
         match &mut load.kind {
             LoadKind::Force(vector) | LoadKind::Traction(vector) => *vector = self.map() * *vector,
+            LoadKind::Pressure(_) | LoadKind::FacePressure(..) => {}
             LoadKind::PerPoint(forces) => {
                 for (point, force) in forces {
                     (*point, *force) = (self.point(*point), self.map() * *force);

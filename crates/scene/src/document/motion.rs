@@ -2,7 +2,8 @@
 
 use super::{Ease, Shape};
 use crate::range::{
-    ANGULAR_VELOCITY, COORDINATE, CURVE_FACTOR, DEGREES, FORCE, FRICTION, LENGTH, TIME, TRACTION, VELOCITY, pairs,
+    ANGULAR_VELOCITY, COORDINATE, CURVE_FACTOR, DEGREES, FORCE, FRICTION, LENGTH, PRESSURE, TIME, TRACTION, VELOCITY,
+    pairs,
 };
 use crate::scene::{BoxSide, Contact};
 use schemars::JsonSchema;
@@ -127,9 +128,12 @@ pub struct Select {
     /// Distance in m; needs `near`.
     #[schemars(transform = LENGTH.bounds())]
     pub radius: Option<f64>,
+    /// Name of a crack: both its faces, for a load with a `pressure`. The name of a crack in several pieces means all
+    /// of them, `name.1` one piece.
+    pub crack: Option<String>,
 }
 
-/// A load: give exactly one of `force`, `traction` and `per_point`.
+/// A load: give exactly one of `force`, `traction`, `pressure` and `per_point`.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LoadKeys {
@@ -143,6 +147,11 @@ pub struct LoadKeys {
     /// drawing.
     #[schemars(transform = TRACTION.bounds())]
     pub traction: Option<[f64; 2]>,
+    /// Pressure in Pa on the selected edges or, with `select = { crack = ... }`, on both faces of a crack, on what it
+    /// grows and on what branches off it. It pushes into the material, along the normal of the edge or face as it is
+    /// then. A selected body or region means all edges of it.
+    #[schemars(transform = PRESSURE.bounds())]
+    pub pressure: Option<f64>,
     /// Forces on single particles.
     pub per_point: Option<Vec<PointForce>>,
     /// Factor over time, [[time in s, factor], ...] with rising times. Default: always 1.

@@ -117,6 +117,8 @@ pub(crate) const FRICTION: Range = Range { infinity: Some("stick"), ..not_negati
 pub(crate) const FORCE: Range = up_to(1e18, "N/m");
 /// A component of a traction.
 pub(crate) const TRACTION: Range = up_to(1e18, "Pa");
+/// A pressure; below zero it pulls.
+pub(crate) const PRESSURE: Range = up_to(1e18, "Pa");
 /// A factor over time.
 pub(crate) const CURVE_FACTOR: Range = up_to(1e9, "");
 

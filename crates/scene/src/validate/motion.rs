@@ -6,8 +6,8 @@ use crate::fault::Check;
 use crate::fault::{KeyPath, SceneFault};
 use crate::frame::Pose;
 use crate::range::{
-    ANGULAR_VELOCITY, COORDINATE, DEGREES, FORCE, FRICTION, INTERVAL, ITEMS, KEYFRAMES, LENGTH, TIME, TRACTION,
-    VELOCITY,
+    ANGULAR_VELOCITY, COORDINATE, DEGREES, FORCE, FRICTION, INTERVAL, ITEMS, KEYFRAMES, LENGTH, PRESSURE, TIME,
+    TRACTION, VELOCITY,
 };
 use crate::scene::*;
 use fissure_plane::Region;
@@ -29,6 +29,26 @@ impl Scene {
                     message,
                     "add `select = { edge = \"...\" }` or `select = { svg = \"...\" }` with an open line along it, or give a `force`",
                 ))
+            }
+            LoadKind::Pressure(pressure) => {
+                PRESSURE.check(path.then("pressure"), "the pressure", *pressure)?;
+                if !matches!(load.selection, Selection::Near { .. }) {
+                    return Ok(());
+                }
+                let message = "a pressure acts on edges, but points are selected";
+                let remedy = "select an `edge`, a `region` around it, a whole `body`, or with `svg` a line along it";
+                Err(SceneFault::new(path.then("select"), message, remedy))
+            }
+            LoadKind::FacePressure(cracks, pressure) => {
+                PRESSURE.check(path.then("pressure"), "the pressure", *pressure)?;
+                match cracks.iter().find(|crack| **crack >= self.cracks.len()) {
+                    None => Ok(()),
+                    Some(crack) => {
+                        let remedy = format!("there are {}, numbered from 0", self.cracks.len());
+                        let message = format!("crack number {crack} is selected");
+                        Err(SceneFault::new(path.then("select").then("crack"), message, remedy))
+                    }
+                }
             }
             LoadKind::PerPoint(forces) => {
                 let path = path.then("per_point");

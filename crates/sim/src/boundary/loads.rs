@@ -28,7 +28,7 @@ pub(crate) struct PointForce {
     pub(crate) force: Vector,
 }
 
-/// The forces that make up load number `index` of `scene`; never empty.
+/// The forces that make up load number `index` of `scene`; none of a pressure, else never empty.
 ///
 /// # Errors
 /// When it selects nothing.
@@ -46,6 +46,7 @@ pub(crate) fn forces_of_load(
             .filter_map(|&(place, force)| Some((nearest(particles, 0..particles.len() as u32, place)?, force)))
             .map(|(particle, force)| PointForce { place: ForcePlace::Particle(particle), force })
             .collect(),
+        LoadKind::Pressure(_) | LoadKind::FacePressure(..) => return Ok(Vec::new()),
     };
     if forces.is_empty() {
         return Err(particles.no_particle("load", index, &load.selection).into());

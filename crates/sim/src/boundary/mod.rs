@@ -4,5 +4,6 @@ pub(crate) mod collider;
 pub(crate) mod constraints;
 pub(crate) mod edges;
 pub(crate) mod loads;
+pub(crate) mod pressure;
 pub(crate) mod selector;
 pub(crate) mod supports;

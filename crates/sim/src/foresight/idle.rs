@@ -7,6 +7,7 @@ pub(super) fn nothing_loads(scene: &Scene) -> Option<Warning> {
     let acts = |curve: &fissure_scene::Curve| curve.points.is_empty() || curve.points.iter().any(|p| p.1 != 0.0);
     let is_force = |kind: &LoadKind| match kind {
         LoadKind::Force(f) | LoadKind::Traction(f) => *f != Vector::zeros(),
+        LoadKind::Pressure(p) | LoadKind::FacePressure(_, p) => *p != 0.0,
         LoadKind::PerPoint(forces) => forces.iter().any(|f| f.1 != Vector::zeros()),
     };
     let forced = scene.loads.iter().any(|load| acts(&load.curve) && is_force(&load.kind));

@@ -50,7 +50,12 @@ impl Samples {
         };
         let forces = |load: &fissure_scene::Load| match &load.kind {
             LoadKind::Force(total) => shared(*total, selected(&load.selection)),
-            LoadKind::Traction(traction) => on_outlines(scene, &particles, &load.selection, *traction, spacing),
+            LoadKind::Traction(t) => on_outlines(scene, &particles, &load.selection, |_| *t, spacing),
+            LoadKind::Pressure(p) => {
+                on_outlines(scene, &particles, &load.selection, |way| Vector::new(-way.y, way.x) * *p, spacing)
+            }
+            // On both faces the same: a crack says itself what that does to its tips.
+            LoadKind::FacePressure(..) => Vec::new(),
             LoadKind::PerPoint(forces) => forces
                 .iter()
                 .map(|&(place, force)| PlacedForce { body: nearest_body(&particles, place), place, force })
@@ -62,17 +67,18 @@ impl Samples {
     }
 }
 
-/// A traction as forces on the pieces of outlines that are selected.
+/// A traction, along a direction of the edge, as forces on the parts of outlines that are selected.
 fn on_outlines(
     scene: &Scene,
     particles: &Particles,
     selection: &Selection,
-    traction: Vector,
+    traction: impl Fn(Vector) -> Vector,
     spacing: f64,
 ) -> Vec<PlacedForce> {
     let mut forces = Vec::new();
-    for OutlineStretch { from, to, .. } in Selector::new(scene, selection).pieces(scene) {
+    for OutlineStretch { from, to, .. } in Selector::new(scene, selection).parts(scene) {
         let length = (to - from).norm();
+        let traction = traction((to - from) / length);
         let parts = (length / spacing).ceil().max(1.0);
         let body = nearest_body(particles, nalgebra::center(&from, &to));
         let place = |k: usize| from + (to - from) * ((k as f64 + 0.5) / parts);

@@ -87,6 +87,7 @@ fn nominal_stress(scene: &Scene, elastic: &[Elastic], load: &Load) -> Option<(us
     let across = |force: Vector| if along_y(force) { high.y - low.y } else { high.x - low.x };
     let stress = match &load.kind {
         LoadKind::Traction(t) => t.norm(),
+        LoadKind::Pressure(p) | LoadKind::FacePressure(_, p) => p.abs(),
         LoadKind::Force(f) => f.norm() / across(*f),
         LoadKind::PerPoint(forces) => {
             let total: Vector = forces.iter().map(|f| f.1).sum();

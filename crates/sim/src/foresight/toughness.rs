@@ -93,7 +93,8 @@ pub(super) fn greatest_loads(scene: &Scene, elastic: &[Elastic]) -> Vec<f64> {
             let near = (section.a() / (section.width() - section.length_of_crack()).max(1e-12 * section.width()))
                 .sqrt()
                 .max(1.0);
-            let felt = DYNAMIC * UNSURE * at_rest.fold(0.0, f64::max) + 1.3 * near * moved * root;
+            let pressed = DYNAMIC * UNSURE * near * pressure_on(scene, tip.index, &times) * root;
+            let felt = DYNAMIC * UNSURE * at_rest.fold(0.0, f64::max) + 1.3 * near * moved * root + pressed;
             let part = felt / least_toughness(scene, tip);
             found[tip.index] = f64::max(found[tip.index], part);
         }
@@ -103,6 +104,18 @@ pub(super) fn greatest_loads(scene: &Scene, elastic: &[Elastic]) -> Vec<f64> {
         found[tip] = f64::NAN;
     }
     found
+}
+
+/// The greatest pressure on the faces of a crack at some times [Pa].
+fn pressure_on(scene: &Scene, crack: usize, times: &[f64]) -> f64 {
+    let pressure = |time: f64| {
+        let of = scene.loads.iter().filter_map(|load| match &load.kind {
+            LoadKind::FacePressure(cracks, p) if cracks.contains(&crack) => Some(p * load.curve.value(time)),
+            _ => None,
+        });
+        of.sum::<f64>().abs()
+    };
+    times.iter().map(|&time| pressure(time)).fold(0.0, f64::max)
 }
 
 /// Times at which loads may be greatest: their curves are linear between them.
@@ -121,6 +134,7 @@ fn total_of_loads(scene: &Scene, samples: &Samples, body: usize, factors: &[f64]
     let each = scene.loads.iter().zip(&samples.loads).zip(factors).map(|((load, forces), factor)| {
         let own: Vec<Vector> = forces.iter().filter(|f| f.body == body).map(|f| f.force).collect();
         match load.kind {
+            LoadKind::Pressure(_) => own.iter().map(Vector::norm).sum::<f64>() * factor.abs(),
             LoadKind::PerPoint(_) => AT_POINTS * own.iter().map(Vector::norm).sum::<f64>() * factor.abs(),
             _ => own.iter().sum::<Vector>().norm() * factor.abs(),
         }

@@ -8,12 +8,15 @@
 //! Faces that press on each other or rub take a part of both: ∫ t_i [u_i],1 q ds and ∫ t_i [U_i],1 q ds, with the
 //! traction t on the face on the +e2 side and the jump [·] from the other side to it, are taken off (the boundary term
 //! of the same integration by parts; of J that of the sliding, since pressed faces have no opening). At a closed crack
-//! K_I is then what it is, zero, and K_II is short of what friction carries.
+//! K_I is then what it is, zero, and K_II is short of what friction carries. So does what presses on the faces from
+//! outside, ∫ t_i u_i,1 q ds and ∫ t_i U_i,1 q ds on each face: under a pressure it is most of J.
 //! Sources: Li, Shih & Needleman 1985 (domain form of J); Yau, Wang & Corten 1980 (interaction integral); Nakamura,
-//! Shih & Freund 1985 (dynamic terms).
+//! Shih & Freund 1985 (dynamic terms); Shih, Moran & Nakamura 1986 and Walters, Paulino & Dodds 2005 (loaded faces, of
+//! J and of the interaction integral).
 
 use crate::crack::crossing::Side;
 use crate::material::elastic::Elastic;
+use crate::tip::face_terms::FaceTerms;
 use crate::tip::zone::{QuadraturePoint, TipZone};
 use crate::williams_fields;
 use fissure_scene::Vector;
@@ -93,12 +96,16 @@ pub(crate) fn domain_integrals(
             m[mode] += p.volume * (flux + inertia * p.acceleration.dot(&big_u_1) * q);
         }
     }
+    let q_behind = |r: f64| weight(Vector::new(-r, 0.0), inner, outer).0;
+    let faces = FaceTerms::of(zone, tip_material, OF_TIP * cell_size, outer, q_behind);
+    j -= faces.far;
+    (0..2).for_each(|mode| m[mode] -= faces.mutual[mode]);
     // What the contacts nearest to the tip feel of the jump is that of the tip's own field.
     let mut of_tip = 0.0;
     let opened = m[0] > 0.0;
     let mut pressed = false;
     for contact in zone.contacts.iter().filter(|c| c.behind > -cell_size && c.behind < outer + cell_size) {
-        let spread = spread(contact.behind, cell_size, |r| weight(Vector::new(-r, 0.0), inner, outer).0);
+        let spread = spread(contact.behind, cell_size, q_behind);
         // Across Williams' faces the jump is (8/E') √(r/2π), of u_2 in mode I and of u_1 in mode II.
         let slope = -4.0 / ((2.0 * PI).sqrt() * tip_material.effective_modulus) * spread.inverse_root;
         m[0] -= contact.force.y * slope;
@@ -113,7 +120,7 @@ pub(crate) fn domain_integrals(
     }
     let half_modulus = 0.5 * tip_material.effective_modulus;
     let [mode_1, mode_2] = m.map(|m| half_modulus * m);
-    j -= of_tip * mode_2;
+    j -= of_tip * mode_2 + faces.near([mode_1, mode_2]);
     DomainIntegrals { j_integral: j, mode_1, mode_2, closed: pressed && !opened }
 }
 
@@ -194,7 +201,7 @@ mod tests {
     use super::*;
     use crate::tip::bend::Bend;
     use crate::tip::reciprocal::{Setting, reciprocal_integrals};
-    use crate::tip::zone::FaceContact;
+    use crate::tip::zone::{FaceContact, FaceLoad};
     use fissure_scene::{Material, Matrix, PlaneState, Point};
 
     fn elastic(plane: PlaneState) -> Elastic {
@@ -278,6 +285,45 @@ mod tests {
                     assert!((found.mode_1 - k_1).abs() < 1.5e-3, "{found:?}");
                     assert!((found.mode_2 - k_2).abs() < 1.5e-3, "{found:?}");
                 }
+            }
+        }
+    }
+
+    /// Truth: a uniform stress that a load on the faces holds in balance has no stress intensities (superposition), and
+    /// J is that of K. Without the part of the faces both would be off by more than 1.
+    #[test]
+    fn what_presses_on_open_faces_is_taken_off() {
+        for e in [PlaneState::Strain, PlaneState::Stress].map(elastic) {
+            for offset in OFFSETS.map(|offset| Vector::new(offset.x, 0.0)) {
+                let uniform = Matrix::new(0.0, 0.3, 0.3, -1.0);
+                let mut zone = zone(&e, [1.0, 0.5], uniform, offset);
+                zone.contacts.clear();
+                let strain = (uniform - Matrix::identity() * (e.lambda / (2.0 * (e.lambda + e.mu)) * uniform.trace()))
+                    / (2.0 * e.mu);
+                let pieces: Vec<(f64, f64)> = (0..12).map(|k| (0.5 * f64::from(k), 0.5 * f64::from(k + 1))).collect();
+                for side in [Side::Above, Side::Below] {
+                    let moved = |r: f64| {
+                        let f = williams_fields(Vector::new(-r, 0.0_f64.copysign(side.sign())), e.mu, e.kolosov);
+                        let of_tip = f[0].displacement + f[1].displacement * 0.5;
+                        of_tip * f64::from(u8::from(r > 0.0)) + strain * Vector::new(-r, 0.0)
+                    };
+                    zone.face_loads.extend(pieces.iter().map(|&(near, far)| FaceLoad {
+                        ends: [far, near].map(|r| Vector::new(-r, 0.0)),
+                        side,
+                        // Out of the material is down for the upper face.
+                        force: uniform * Vector::new(0.0, -side.sign()) * (far - near),
+                        stretch: if near > 0.0 { moved(near) - moved(far) } else { -moved(far) },
+                    }));
+                }
+                let found = domain_integrals(&zone, &[e], &e, 1.0, 4.0, true);
+                assert!((found.mode_1 - 1.0).abs() < 0.01 && (found.mode_2 - 0.5).abs() < 0.01, "{found:?}");
+                assert!((found.j_integral * e.effective_modulus - 1.25).abs() < 0.02, "{found:?}");
+                assert!(!found.closed, "{found:?}");
+                let found = reciprocal_integrals(&zone, &straight(), 9.0, &setting(&e), 4.0);
+                assert!((found.mode_1 - 1.0).abs() < 0.01 && (found.mode_2 - 0.5).abs() < 0.01, "{found:?}");
+                zone.face_loads.clear();
+                let found = domain_integrals(&zone, &[e], &e, 1.0, 4.0, true);
+                assert!(found.mode_1 < 0.0, "{found:?}");
             }
         }
     }

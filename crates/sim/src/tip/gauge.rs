@@ -188,6 +188,7 @@ impl Gauge<'_> {
             Ok(j) => j.x,
             Err(never) => match never {},
         };
+        let j = j - zone.work_of_face_loads(radius);
         if self.scene.solver.area_term { j + area_term(zone, radius) } else { j }
     }
 

@@ -3,6 +3,7 @@
 pub(crate) mod bend;
 pub(crate) mod contour;
 pub(crate) mod domain;
+mod face_terms;
 pub(crate) mod frame;
 pub(crate) mod gauge;
 mod reciprocal;

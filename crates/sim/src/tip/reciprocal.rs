@@ -6,7 +6,8 @@
 //!
 //! K = (E'/2) { Σ V [(s_ij U_i − S_ij u_i) q,j + ρ a_i U_i q] + ∫ S_ij m_j u_i q ds − Σ F_i (U_i⁺ − U_i⁻) q }
 //!
-//! with ∫ over both faces, m out of the material, and F what the faces do to the left one. The field is continued along
+//! with ∫ over both faces, m out of the material, and F what the faces do to the left one; what presses on a face from
+//! outside takes −F_i U_i of that face. The field is continued along
 //! the crack as it is: on the left of it the angle grows beyond π, on the right below −π. On a straight crack the face
 //! term is 0; where the crack is bent it takes what the auxiliary state has of tractions there. So the sum does not
 //! depend on the rim and a kink within it does no harm, which it does to J and to the interaction integral: these take
@@ -97,6 +98,16 @@ pub(crate) fn reciprocal_integrals(
             }
         }
     }
+    for load in &zone.face_loads {
+        let [far, near] = load.ends.map(|end| bend.foot(end.into()).way.max(0.0));
+        if far > near {
+            let mean = mean_of_face(bend, [near, far], |place| {
+                let q = q_at(place);
+                fields(place.coords, Some(load.side)).map(|dual| dual.displacement * q)
+            });
+            (0..2).for_each(|mode| m[mode] -= load.force.dot(&mean[mode]));
+        }
+    }
     let opened = m[0] > 0.0;
     let mut pressed = false;
     for contact in &zone.contacts {
@@ -144,6 +155,20 @@ fn face_displacement(points: &[Sided<'_>], side: Side, place: Point, reach: f64)
         }
     }
     (volume > 0.0).then(|| sum / volume)
+}
+
+/// Means of what `of` gives for both modes over the ways between two from the tip [m].
+fn mean_of_face(bend: &Bend, ways: [f64; 2], of: impl Fn(Point) -> [Vector; 2]) -> [Vector; 2] {
+    const PARTS: u32 = 8;
+    let [low, high] = ways.map(f64::sqrt);
+    let mut sums = [Vector::zeros(); 2];
+    for part in 0..PARTS {
+        // As in `mean_jumps`.
+        let x = low + (high - low) * (f64::from(part) + 0.5) / f64::from(PARTS);
+        let values = of(bend.at(x * x));
+        (0..2).for_each(|mode| sums[mode] += values[mode] * x);
+    }
+    sums.map(|sum| sum * (2.0 * (high - low) / f64::from(PARTS) / (ways[1] - ways[0])))
 }
 
 /// Means of the jumps, left less right, of the auxiliary displacements of both modes, over the hat of a node at the way

@@ -15,6 +15,8 @@ pub(crate) struct TipZone {
     pub(crate) points: Vec<QuadraturePoint>,
     /// What the faces behind the tip do to each other.
     pub(crate) contacts: Vec<FaceContact>,
+    /// What presses on the faces behind the tip.
+    pub(crate) face_loads: Vec<FaceLoad>,
     /// The crack behind the tip, where it has a kink near; none where it has not, and in the updated formulation.
     pub(crate) bend: Option<Bend>,
     /// Opening (x_left − x_right) in the tip frame, taken behind the tip: (sliding, opening) [m]. Left is the +e2 side.
@@ -33,6 +35,16 @@ impl TipZone {
         if mass > 0.0 {
             self.points.iter_mut().for_each(|p| p.velocity -= momentum / mass);
         }
+    }
+
+    /// What the loads on the faces within `radius` [m] of the tip take of J on a contour [J/m²]: ∫ t_i u_i,1 ds.
+    pub(crate) fn work_of_face_loads(&self, radius: f64) -> f64 {
+        let work = |load: &FaceLoad| {
+            let [far, near] = load.ends.map(|end| -end.x);
+            let within = (radius.min(far) - near.max(0.0)) / (far - near);
+            if within > 0.0 { within.min(1.0) * load.force.dot(&load.stretch) / (far - near) } else { 0.0 }
+        };
+        self.face_loads.iter().filter(|load| load.ends[0].x < load.ends[1].x).map(work).sum()
     }
 
     /// Moves the origin sideways into the middle between the rows of particles on the two sides of the crack.
@@ -67,6 +79,19 @@ pub(crate) struct FaceContact {
     pub(crate) behind: f64,
     /// Force per unit thickness on the face on the +e2 side, in the tip frame [N/m]. The other one feels the opposite.
     pub(crate) force: Vector,
+}
+
+/// What presses on a straight piece of one face behind a tip. Vectors in the tip frame.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FaceLoad {
+    /// The end farther from the tip along the crack, then the nearer one [m].
+    pub(crate) ends: [Vector; 2],
+    /// The face: `Above` is the one on the +e2 side.
+    pub(crate) side: Side,
+    /// Force per unit thickness [N/m].
+    pub(crate) force: Vector,
+    /// Displacement of the nearer end less that of the farther one [m].
+    pub(crate) stretch: Vector,
 }
 
 /// One particle near a tip. Vectors and tensors in the tip frame.

@@ -1,12 +1,13 @@
 //! Loads: forces at places of the material.
 
-use super::field_vectors::FieldVectors;
 use super::lattice::Lattice;
 use super::motion::Motion;
 use super::near::Near;
+use super::pressure::{Pressed, Pressure};
 use super::probe::Probe;
 use crate::SimulationError;
 use crate::boundary::loads::{self, ForcePlace};
+use crate::crack::cracks::{Cracks, TipId};
 use fissure_plane::Vector;
 use fissure_scene::{Load, Scene};
 
@@ -18,16 +19,22 @@ struct ProbeForce {
     force: Vector,
 }
 
-/// The forces of each load of the scene.
+/// The loads of the scene.
 #[derive(Debug)]
-pub(super) struct Loads(Vec<Vec<ProbeForce>>);
+pub(super) struct Loads {
+    /// The forces of each, none of pressures.
+    forces: Vec<Vec<ProbeForce>>,
+    pressures: Vec<Pressure>,
+    /// Factors of the pressures in the last step, at the beginning those of the start.
+    factors: Vec<f64>,
+}
 
 impl Loads {
-    /// The forces of the loads of `scene`.
+    /// The forces of the loads of `scene`, on cracks as they are now.
     ///
     /// # Errors
     /// When a load selects nothing.
-    pub(super) fn new(scene: &Scene, lattice: &Lattice) -> Result<Self, SimulationError> {
+    pub(super) fn new(scene: &Scene, lattice: &Lattice, cracks: &Cracks) -> Result<Self, SimulationError> {
         let on_probe = |at: loads::PointForce| {
             let (body, place) = match at.place {
                 ForcePlace::Particle(p) => (lattice.particles.body[p as usize], lattice.particles.rest[p as usize]),
@@ -39,24 +46,42 @@ impl Loads {
             let forces = loads::forces_of_load(scene, &lattice.particles, index)?;
             Ok(forces.into_iter().map(on_probe).collect())
         };
-        (0..scene.loads.len()).map(of_load).collect::<Result<_, _>>().map(Self)
+        let forces = (0..scene.loads.len()).map(of_load).collect::<Result<_, SimulationError>>()?;
+        let pressures = Pressure::all(scene, lattice, cracks)?;
+        let factors = pressures.iter().map(|pressure| scene.loads[pressure.load].curve.value(0.0)).collect();
+        Ok(Self { forces, pressures, factors })
     }
 
     /// Lays the places of loads anew where something has changed.
-    pub(super) fn refresh(&mut self, near: &Near, lattice: &Lattice) {
-        for force in self.0.iter_mut().flatten().filter(|force| near.contains(force.probe.rest)) {
+    pub(super) fn refresh(&mut self, near: &Near, scene: &Scene, lattice: &Lattice, cracks: &Cracks) {
+        for force in self.forces.iter_mut().flatten().filter(|force| near.contains(force.probe.rest)) {
             force.probe = lattice.probe(force.probe.body, force.probe.rest, force.probe.nudged);
         }
+        self.pressures.iter_mut().for_each(|pressure| pressure.refresh(near, scene, lattice, cracks));
+    }
+
+    /// Follows a tip that has moved on along its segment.
+    pub(super) fn slide(&mut self, id: TipId, scene: &Scene, lattice: &Lattice, cracks: &Cracks) {
+        self.pressures.iter_mut().for_each(|pressure| pressure.slide(id, scene, lattice, cracks));
     }
 
     /// The forces of each of `loads` with its factor at `time` [s]; loads that are zero are left out.
     fn acting<'a>(&'a self, loads: &'a [Load], time: f64) -> impl Iterator<Item = (f64, &'a [ProbeForce])> {
         let factors = loads.iter().map(move |load| load.curve.value(time));
-        factors.zip(&self.0).filter(|(factor, _)| *factor != 0.0).map(|(factor, forces)| (factor, forces.as_slice()))
+        factors
+            .zip(&self.forces)
+            .filter(|(factor, _)| *factor != 0.0)
+            .map(|(factor, forces)| (factor, forces.as_slice()))
     }
 
-    /// Adds the loads at the time `time` [s] to the forces.
-    pub(super) fn add_forces(&self, loads: &[Load], time: f64, force: &mut FieldVectors) {
+    /// The pressures with their factors in the last step.
+    fn pressing(&self) -> impl Iterator<Item = (f64, &Pressure)> {
+        self.factors.iter().copied().zip(&self.pressures).filter(|(factor, _)| *factor != 0.0)
+    }
+
+    /// Adds the loads of a step around the time `time` [s] to the forces.
+    pub(super) fn add_forces(&mut self, loads: &[Load], time: f64, motion: &mut Motion) {
+        let Motion { displacement, force, .. } = motion;
         for (factor, forces) in self.acting(loads, time) {
             for point in forces {
                 let f = point.force * factor;
@@ -66,14 +91,27 @@ impl Loads {
                 }
             }
         }
+        for (factor, pressure) in self.factors.iter_mut().zip(&self.pressures) {
+            *factor = loads[pressure.load].curve.value(time);
+        }
+        self.pressing().for_each(|(factor, pressure)| pressure.add_forces(factor, displacement, force));
     }
 
-    /// Work that the loads do at the time `time` [s] and the present velocities, per time [W/m].
+    /// Work that the loads of the last step, around the time `time` [s], do at the present velocities, per time [W/m].
     pub(super) fn power(&self, loads: &[Load], time: f64, motion: &Motion) -> f64 {
         let mut power = 0.0;
         for (factor, forces) in self.acting(loads, time) {
             power += factor * forces.iter().map(|p| p.force.dot(&p.probe.value(&motion.velocity))).sum::<f64>();
         }
-        power
+        power + self.pressing().map(|(factor, pressure)| pressure.power(factor, motion)).sum::<f64>()
+    }
+
+    /// The pieces of the faces of a crack that are pressed on, with the pressure now [Pa].
+    pub(super) fn on_faces(&self, crack: usize) -> impl Iterator<Item = (f64, &Pressed)> {
+        let is_of = move |pressed: &&Pressed| pressed.piece.face.is_some_and(|(of, _)| of as usize == crack);
+        self.pressing().flat_map(move |(factor, pressure)| {
+            let now = factor * pressure.pressure;
+            pressure.pieces.iter().filter(is_of).map(move |pressed| (now, pressed))
+        })
     }
 }

@@ -2,7 +2,9 @@
 
 use super::contact::Contacts;
 use super::lattice::Lattice;
+use super::loads::Loads;
 use super::motion::Motion;
+use super::pressure::Pressed;
 use super::probe::Probe;
 use super::probes::Probes;
 use super::reader::ParticleRates;
@@ -12,7 +14,7 @@ use crate::crack::crossing::Side;
 use crate::solver::Observed;
 use crate::tip::bend::Bend;
 use crate::tip::frame::{line_around, side_of, tip_of, turn};
-use crate::tip::zone::{FaceContact, QuadraturePoint, TipZone};
+use crate::tip::zone::{FaceContact, FaceLoad, QuadraturePoint, TipZone};
 use fissure_plane::{Matrix, Point, Vector};
 use fissure_scene::End;
 
@@ -27,6 +29,8 @@ pub(super) struct Look<'a> {
     pub(super) probes: &'a Probes,
     /// What faces do to each other.
     pub(super) contacts: &'a Contacts,
+    /// What presses on faces.
+    pub(super) loads: &'a Loads,
     /// Time by which velocities are ahead of the rest [s].
     pub(super) half_step: f64,
 }
@@ -102,12 +106,30 @@ impl Observed for Look<'_> {
             })
             .collect();
         let beyond = radius + 2.0 * lattice.grid.cell_size;
+        let left = left_of_tip(id.end);
+        let on_face = |(pressure, pressed): (f64, &Pressed)| {
+            let (_, side) = pressed.piece.face?;
+            // From the end farther along the crack from the tip to the nearer one.
+            let is_forward = (side == Side::Above) == (id.end == End::End);
+            let order = if is_forward { [0, 1] } else { [1, 0] };
+            let probe = order.map(|k| &pressed.ends[k]);
+            let moved = probe
+                .map(|probe| frame * (back * probe.value(&motion.displacement) + back_minus_one * (probe.rest - tip)));
+            Some(FaceLoad {
+                ends: probe.map(|probe| frame * (probe.rest - tip)),
+                side: if side == left { Side::Above } else { Side::Below },
+                force: into * pressed.normal(&motion.displacement) * pressure,
+                stretch: moved[1] - moved[0],
+            })
+        };
+        let is_near = |(_, pressed): &(f64, &Pressed)| (pressed.piece.middle() - tip).norm() < beyond;
+        let face_loads = self.loads.on_faces(id.crack).filter(is_near).filter_map(on_face).collect();
         let has_kink = cracks.way_to_kink(id, beyond).is_some();
         let bend = has_kink.then(|| {
             let behind = cracks.behind(id, beyond);
             Bend::new(behind.into_iter().rev().map(|place| Point::from(frame * (place - tip))).collect())
         });
-        TipZone { points, contacts, bend, opening, opening_distance }
+        TipZone { points, contacts, face_loads, bend, opening, opening_distance }
     }
 
     fn tip_now(&self, cracks: &Cracks, id: TipId) -> (Point, Vector) {

@@ -23,6 +23,7 @@ mod look;
 pub(crate) mod memory;
 mod motion;
 mod near;
+mod pressure;
 mod probe;
 mod probes;
 mod range;
@@ -151,7 +152,7 @@ impl Total {
         let friction = scene.solver.crack_contact.then_some(scene.solver.crack_friction);
         Ok(Self {
             damping: scene.solver.damping,
-            loads: Loads::new(scene, &lattice)?,
+            loads: Loads::new(scene, &lattice, cracks)?,
             supports: Supports::new(scene, &lattice)?,
             colliders: Colliders::new(scene, &lattice),
             contacts: Contacts::new(friction, &lattice, cracks),
@@ -169,8 +170,8 @@ impl Total {
 
     /// A moment at which velocities are ahead by `half_step` [s].
     fn look(&self, half_step: f64) -> Look<'_> {
-        let Self { lattice, motion, probes, contacts, .. } = self;
-        Look { lattice, motion, probes, contacts, half_step }
+        let Self { lattice, motion, probes, contacts, loads, .. } = self;
+        Look { lattice, motion, probes, contacts, loads, half_step }
     }
 
     /// Crack faces that meet.
@@ -264,7 +265,7 @@ impl Solver for Total {
         let Self { scene, lattice, motion, ties, .. } = self;
         // Forces at the displacements of the beginning.
         internal_forces(lattice, ties, &motion.displacement, &mut motion.force);
-        self.loads.add_forces(&scene.loads, middle, &mut motion.force);
+        self.loads.add_forces(&scene.loads, middle, motion);
         ties.share(&mut motion.force);
         // v += Δt f/m, then what changes velocities by impulses.
         let kick = motion.kick(&lattice.inverse_mass, scene.gravity, self.damping, time_step);
@@ -303,7 +304,7 @@ impl Solver for Total {
         let lost = self.lattice.recut(cracks, &boxes, divides, &mut self.motion);
         let has_mouthed = self.probes.refresh(&self.lattice, cracks, changed, &boxes);
         let near = Near::new(&self.lattice, &boxes, cracks, changed, &points_before);
-        self.loads.refresh(&near, &self.lattice);
+        self.loads.refresh(&near, &self.scene, &self.lattice, cracks);
         self.supports.refresh(&near, &self.scene, &self.lattice);
         self.colliders.refresh(&near, &self.lattice);
         self.contacts.refresh(&near, &self.lattice, cracks);
@@ -413,6 +414,7 @@ impl SlidingTips for Total {
     fn slide(&mut self, cracks: &Cracks, id: TipId) {
         self.ties.soften(&self.lattice, cracks, id);
         self.probes.move_last_faces(&self.lattice, cracks, id);
+        self.loads.slide(id, &self.scene, &self.lattice, cracks);
     }
 }
 

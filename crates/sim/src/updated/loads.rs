@@ -1,19 +1,23 @@
 //! Loads as forces on particles.
 
+use super::faces::Faces;
 use super::gather::FromGrid;
 use super::lattice::Lattice;
 use super::nodes::Nodes;
 use super::points::Points;
+use super::pressure::Pressure;
 use super::setup::Setup;
 use crate::SimulationError;
 use crate::boundary::loads::{ForcePlace, forces_of_load, nearest};
-use fissure_scene::{Load, Vector};
+use crate::crack::cracks::Cracks;
+use fissure_scene::{Load, LoadKind, Vector};
 
 /// The forces of all loads.
 #[derive(Debug)]
 pub(super) struct Loads {
-    /// Per load: (particle, force at a curve factor of 1 [N/m]).
+    /// Per load: (particle, force at a curve factor of 1 [N/m]); none of pressures.
     forces: Vec<Vec<(u32, Vector)>>,
+    pressures: Vec<Pressure>,
 }
 
 impl Loads {
@@ -21,9 +25,12 @@ impl Loads {
     ///
     /// # Errors
     /// When a load selects nothing.
-    pub(super) fn new(setup: &Setup) -> Result<Self, SimulationError> {
+    pub(super) fn new(setup: &Setup, cracks: &Cracks, faces: &Faces) -> Result<Self, SimulationError> {
         let Setup { scene, particles, .. } = setup;
         let of_load = |(index, load): (usize, &Load)| {
+            if matches!(load.kind, LoadKind::Pressure(_) | LoadKind::FacePressure(..)) {
+                return Ok(Vec::new());
+            }
             let layer = particles.select(scene, &load.selection);
             let particle = |place| match place {
                 ForcePlace::Particle(p) => Some(p),
@@ -36,11 +43,39 @@ impl Loads {
             }
             Ok(forces)
         };
-        Ok(Self { forces: scene.loads.iter().enumerate().map(of_load).collect::<Result<_, SimulationError>>()? })
+        let forces = scene.loads.iter().enumerate().map(of_load).collect::<Result<_, SimulationError>>()?;
+        Ok(Self { forces, pressures: Pressure::all(setup, cracks, faces)? })
+    }
+
+    /// Follows cracks that have changed.
+    pub(super) fn follow(&mut self, setup: &Setup, cracks: &Cracks, faces: &Faces) {
+        self.pressures.iter_mut().for_each(|pressure| pressure.follow(setup, cracks, faces));
+    }
+
+    /// The pressure of the last step on the faces of a crack [Pa].
+    pub(super) fn pressure_on_faces(&self, crack: usize) -> f64 {
+        self.pressures.iter().map(|pressure| pressure.on_faces(crack)).sum()
     }
 
     /// Adds the forces at the time `middle` [s] to those on nodes.
-    pub(super) fn add_forces(&self, points: &Points, lattice: &Lattice, setup: &Setup, middle: f64, nodes: &mut Nodes) {
+    pub(super) fn add_forces(
+        &mut self,
+        points: &Points,
+        faces: &Faces,
+        lattice: &Lattice,
+        setup: &Setup,
+        middle: f64,
+        nodes: &mut Nodes,
+    ) {
+        for pressure in &mut self.pressures {
+            pressure.begin_step(setup, middle);
+            pressure.for_each_force(faces, |p, f| {
+                lattice.for_each_entry(p, points.point[p].position, |field, w| {
+                    nodes.after[0][field] += w * f.x;
+                    nodes.after[1][field] += w * f.y;
+                });
+            });
+        }
         let force = &mut nodes.after;
         for (load, forces) in setup.scene.loads.iter().zip(&self.forces) {
             let factor = load.curve.value(middle);
@@ -59,7 +94,7 @@ impl Loads {
 
     /// Power of the forces at the time `middle` [s]: material moves by Σ v_i w_ip Δt, so that Σ f·v Δt is their exact
     /// work [W/m].
-    pub(super) fn power(&self, points: &Points, from: &FromGrid<'_>, middle: f64) -> f64 {
+    pub(super) fn power(&self, points: &Points, faces: &Faces, from: &FromGrid<'_>, middle: f64) -> f64 {
         let mut power = 0.0;
         for (load, forces) in from.setup.scene.loads.iter().zip(&self.forces) {
             let factor = load.curve.value(middle);
@@ -67,6 +102,9 @@ impl Loads {
                 let gathered = from.gather_one(p as usize, &points.point[p as usize]);
                 power += factor * f.dot(&gathered.velocity);
             }
+        }
+        for pressure in &self.pressures {
+            pressure.for_each_force(faces, |p, f| power += f.dot(&from.gather_one(p, &points.point[p]).velocity));
         }
         power
     }

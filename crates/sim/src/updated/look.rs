@@ -2,10 +2,11 @@
 
 use super::Updated;
 use super::points::Motion;
+use super::tracer::SIDES;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::solver::Observed;
 use crate::tip::frame::{line_around, side_of, tip_of, turn};
-use crate::tip::zone::{FaceContact, QuadraturePoint, TipZone};
+use crate::tip::zone::{FaceContact, FaceLoad, QuadraturePoint, TipZone};
 use fissure_scene::{End, Matrix, Point, Vector};
 
 /// The solver in the middle of a step: positions, deformations and accelerations of the step's beginning; velocities on
@@ -91,7 +92,8 @@ impl Updated {
         let wanted = OPENING_DISTANCE * self.setup.scene.cell_size;
         let (opening, opening_distance) = self.faces.cracks[id.crack].opening(id.end, wanted);
         let contacts = self.contacts_around(&axes, radius);
-        TipZone { points, contacts, bend: None, opening: axes.frame * opening, opening_distance }
+        let face_loads = self.face_loads(&axes, cracks, radius, turned.0);
+        TipZone { points, contacts, face_loads, bend: None, opening: axes.frame * opening, opening_distance }
     }
 
     /// A particle with H = `h` in the frame of a tip whose surroundings have `turned` by (R, R − I).
@@ -139,6 +141,33 @@ impl Updated {
                 ((g.velocity + g.before) * 0.5, g.motion(time_step))
             }
         }
+    }
+
+    /// What presses on the faces of the crack around a tip whose surroundings have turned by `turned`.
+    fn face_loads(&self, axes: &TipAxes, cracks: &Cracks, radius: f64, turned: Matrix) -> Vec<FaceLoad> {
+        let pressure = self.loads.pressure_on_faces(axes.id.crack);
+        let (now, rest) = (&self.faces.cracks[axes.id.crack], &cracks.of(axes.id).points);
+        let mut found = Vec::new();
+        if pressure == 0.0 {
+            return found;
+        }
+        let beyond = radius + 2.0 * self.setup.scene.cell_size;
+        for (face, side) in SIDES.into_iter().enumerate() {
+            // Walked towards the tip, material on the +e2 side lies to the left.
+            let side = if axes.id.end == End::End { side } else { side.opposite() };
+            for k in 1..rest.len() {
+                let [far, near] = if axes.id.end == End::End { [k - 1, k] } else { [k, k - 1] };
+                let place = [far, near].map(|k| axes.frame * (now.faces[face][k] - axes.tip));
+                let was = [far, near].map(|k| axes.frame * (turned * (rest[k] - axes.tip_at_rest)));
+                if place[1].norm() > beyond {
+                    continue;
+                }
+                let way = place[1] - place[0];
+                let force = Vector::new(-way.y, way.x) * (pressure * side.sign());
+                found.push(FaceLoad { ends: place, side, force, stretch: way - (was[1] - was[0]) });
+            }
+        }
+        found
     }
 
     /// What the faces of the crack do to each other around a tip.

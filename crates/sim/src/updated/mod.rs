@@ -37,6 +37,7 @@ mod nodes;
 mod particles_to_grid;
 mod plastic;
 mod points;
+mod pressure;
 mod remap;
 mod setup;
 mod snapshot;
@@ -105,7 +106,7 @@ impl Updated {
         let setup = Setup::new(scene, particles);
         let (points, faces) = (Points::at_rest(&setup), Faces::at_rest(scene, cracks));
         let reactions = vec![Reaction::default(); scene.supports.len()];
-        Self::around(setup, points, faces, (0.0, reactions))
+        Self::around(setup, points, faces, cracks, (0.0, reactions))
     }
 
     /// Goes on from a state of the other formulation.
@@ -148,18 +149,19 @@ impl Updated {
         faces.check(scene, cracks)?;
         saved::finite("its work", [&external_work])?;
         Reaction::check(&reactions, scene.supports.len())?;
-        Self::around(Setup::new(scene, particles), points, faces, (external_work, reactions))
+        Self::around(Setup::new(scene, particles), points, faces, cracks, (external_work, reactions))
     }
 
     fn around(
         setup: Setup,
         points: Points,
         faces: Faces,
+        cracks: &Cracks,
         (external_work, reactions): (f64, Vec<Reaction>),
     ) -> Result<Self, SimulationError> {
         Ok(Self {
             stability: Stability::of(&setup),
-            loads: Loads::new(&setup)?,
+            loads: Loads::new(&setup, cracks, &faces)?,
             supports: Supports::new(&setup)?,
             colliders: Colliders::of(&setup.scene),
             damping: setup.scene.solver.damping,
@@ -193,9 +195,9 @@ impl Updated {
     /// Sends mass, momentum, stresses and loads to the nodes and lets these move by them; `middle`: time in the middle
     /// of the step [s].
     fn move_nodes(&mut self, middle: f64, time_step: f64) {
-        let Self { setup, points, lattice, nodes, .. } = self;
+        let Self { setup, points, faces, lattice, nodes, loads, .. } = self;
         ToGrid { setup, points, lattice }.send(nodes);
-        self.loads.add_forces(points, lattice, setup, middle, nodes);
+        loads.add_forces(points, faces, lattice, setup, middle, nodes);
         relieve_light_fields(setup, points, lattice, nodes);
         nodes.update_velocities(setup.scene.gravity, self.damping, time_step);
         if setup.scene.solver.transfer == Transfer::Xpic {
@@ -229,7 +231,8 @@ impl Updated {
 
     /// Counts the work of loads and gravity.
     fn count_work(&mut self, middle: f64, time_step: f64) {
-        let power = self.loads.power(&self.points, &self.source(), middle) + self.nodes.power_of_gravity(&self.setup);
+        let power = self.loads.power(&self.points, &self.faces, &self.source(), middle)
+            + self.nodes.power_of_gravity(&self.setup);
         self.external_work += power * time_step;
     }
 
@@ -313,6 +316,7 @@ impl Solver for Updated {
     fn recut(&mut self, cracks: &Cracks, changed: &[TipId]) -> f64 {
         self.faces.follow(cracks, changed, &self.setup, &self.points);
         self.lattice.division = self.faces.division(&self.setup, cracks);
+        self.loads.follow(&self.setup, cracks, &self.faces);
         0.0
     }
 

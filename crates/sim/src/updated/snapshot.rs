@@ -4,6 +4,7 @@ use super::Updated;
 use super::faces::Faces;
 use super::points::Points;
 use super::setup::Setup;
+use super::tracer::Tracer;
 use crate::SimulationError;
 use crate::boundary::supports::Reaction;
 use crate::crack::cracks::Cracks;
@@ -11,7 +12,7 @@ use crate::faces::crack_frame::crack_frame;
 use crate::particles::ParticleNow;
 use crate::saved;
 use crate::solver::{Continuation, Snapshot, SolverEnergies};
-use fissure_scene::{CrackFrame, OutlineFrame, ParticleFrame, Scene, Vector};
+use fissure_scene::{CrackFrame, OutlineFrame, ParticleFrame, Point, Scene, Vector};
 
 impl Snapshot for Updated {
     fn particle_frame(&self) -> ParticleFrame {
@@ -81,10 +82,20 @@ impl Points {
 impl Faces {
     /// The rings of all bodies of `scene`.
     pub(super) fn outline_frames(&self, scene: &Scene) -> Vec<OutlineFrame> {
-        self.outlines.frames(scene, |tracer| match tracer.face {
+        self.outlines.frames(scene, |tracer| self.vertex_now(tracer))
+    }
+
+    /// Place [m] and velocity [m/s] of a vertex of an outline.
+    fn vertex_now(&self, tracer: &Tracer) -> (Point, Vector) {
+        match tracer.face {
             None => (tracer.position, tracer.velocity),
             Some((id, face)) => self.cracks[id.crack].face_end(id.end, face),
-        })
+        }
+    }
+
+    /// Place of a vertex of an outline [m].
+    pub(super) fn place_of(&self, tracer: &Tracer) -> Point {
+        self.vertex_now(tracer).0
     }
 
     /// The cracks with both faces.

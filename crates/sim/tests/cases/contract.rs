@@ -1,7 +1,9 @@
 //! What both formulations promise, asked of each in the same words.
 
 use crate::common::{YOUNG, add_crack, add_traction, hold, plate, pull, rectangle, run, set_velocity, updated};
-use fissure_scene::{BoxSide, Collider, ColliderShape, Contact, Frame, Point, Pose, Scene, Selection, Vector};
+use fissure_scene::{
+    BoxSide, Collider, ColliderShape, Contact, Frame, Load, LoadKind, Point, Pose, Scene, Selection, Vector,
+};
 use fissure_sim::Simulation;
 
 /// A formulation and how exact it is where the promise is not one of round-off. Measured, with a margin.
@@ -162,7 +164,8 @@ fn patch_test(formulation: &Formulation) {
 }
 
 /// A plate of 150 × 150 cells, enough for threads to share, on which everything acts at once: its crack is torn open
-/// and grows from the second step on, it is pulled, held, and hit by a disc.
+/// and grows from the second step on, it is pulled, held, pressed on its left and on the faces of its crack, and hit by
+/// a disc.
 fn busy_plate() -> Scene {
     let mut scene = plate([15.0, 15.0], 0.1, 5e-4);
     scene.frames.last = 2;
@@ -173,6 +176,10 @@ fn busy_plate() -> Scene {
     set_velocity(&mut scene, Selection::Region(rectangle([0.0, 0.0], [15.0, 7.5])), [0.0, -1.0]);
     add_traction(&mut scene, BoxSide::Top, [1e3, 2e4]);
     hold(&mut scene, Selection::Edge { side: BoxSide::Bottom, bodies: None }, [Some(0.1), Some(-0.5)]);
+    let left = Selection::Edge { side: BoxSide::Left, bodies: None };
+    for (selection, kind) in [(left, LoadKind::Pressure(1e4)), (Selection::All, LoadKind::FacePressure(vec![0], 2e4))] {
+        scene.loads.push(Load { selection, kind, curve: Default::default() });
+    }
     let pose = |time: f64| Pose { position: Point::new(16.0 - 30.0 * time, 3.0), angle: 0.0 };
     scene.colliders.push(Collider {
         name: "disc".into(),

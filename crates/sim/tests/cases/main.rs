@@ -7,6 +7,7 @@ mod contract;
 mod directing;
 mod edges;
 mod plane;
+mod pressure;
 mod price;
 mod scale;
 mod singular;

@@ -35,7 +35,7 @@ const TRACTION: f64 = 1e3;
 
 /// K_I/(σ√(πa)) for any a/b of the table: divided by Feddersen's √sec the table is smooth, and a polynomial passes
 /// through its entries.
-fn factor(column: usize, ratio: f64) -> f64 {
+pub(super) fn factor(column: usize, ratio: f64) -> f64 {
     let secant = |x: f64| (FRAC_PI_2 * x).cos().sqrt().recip();
     polynomial(&FACTORS.map(|(x, f)| (x, f[column] / secant(x))), ratio) * secant(ratio)
 }

@@ -68,6 +68,14 @@ const FACTORS: [(f64, [f64; 3]); 4] = [
 const TRACTION: f64 = 1e3;
 
 impl EdgeCrack {
+    /// σ [Pa].
+    pub(super) const TRACTION: f64 = TRACTION;
+
+    /// The scene with nothing that loads it, solved by the standard preset.
+    pub(super) fn without_load(&self) -> Scene {
+        Scene { loads: Vec::new(), ..self.scene(SolverPreset::Standard) }
+    }
+
     fn cell_size(&self) -> f64 {
         LENGTH / self.cells
     }

@@ -4,6 +4,7 @@ use super::guides::{DrawnGuides, seat_on_guides};
 use super::{Resolved, Resolver};
 use crate::document::CrackKeys;
 use crate::fault::{KeyPath, SceneFault, show};
+use crate::load::nearest::nearest;
 use crate::load::seating::{Seated, seat_crack, seat_on_cracks};
 use crate::scene::*;
 use crate::validate::no_tip;
@@ -76,6 +77,22 @@ impl<'d> Resolver<'d> {
             return Err(SceneFault::new(path.then("line"), message, "move it into a body"));
         }
         Ok(pieces)
+    }
+
+    /// Numbers of the cracks of that name: all pieces of a drawn one, or the one of the scene that is called so.
+    pub(super) fn cracks_called(&self, path: KeyPath, name: &str, cracks: &[Crack]) -> Resolved<Vec<usize>> {
+        let drawn: Vec<String> = self.document.crack.iter().enumerate().map(|(i, keys)| name_of(i, keys)).collect();
+        let is_piece = |k: &usize| self.origin.cracks.get(*k).is_some_and(|&i| drawn[i] == name);
+        let pieces: Vec<usize> = (0..cracks.len()).filter(is_piece).collect();
+        if !pieces.is_empty() {
+            return Ok(pieces);
+        }
+        if let Some(one) = cracks.iter().position(|crack| crack.name == name) {
+            return Ok(vec![one]);
+        }
+        let mut known: Vec<&str> = drawn.iter().map(String::as_str).collect();
+        known.extend(cracks.iter().map(|crack| crack.name.as_str()).filter(|of| !drawn.iter().any(|d| d == of)));
+        Err(SceneFault::new(path, format!("there is no crack `{name}`"), nearest(name, &known)))
     }
 
     /// The cracks of the scene that the pieces of a drawn one are: of its name, or `name.1`, `name.2`, ...

@@ -132,6 +132,7 @@ impl<'d> Resolver<'d> {
         scene.toughness = self.toughness(&scene, tolerance)?;
         self.cracks(&mut scene, tolerance)?;
         self.flaws(&mut scene, tolerance)?;
+        self.pressed_cracks(&mut scene)?;
         scene.validate().map_err(|fault| self.origin.in_document(fault))?;
         self.short_cracks(&scene);
         self.ligaments(&scene);

@@ -1,5 +1,6 @@
 //! What moves and holds the bodies: colliders, loads, supports, velocities.
 
+use super::selection::combined;
 use super::shapes::{center_of_area, rectangle};
 use super::{Resolved, Resolver};
 use crate::curve::Curve;
@@ -73,24 +74,37 @@ impl<'d> Resolver<'d> {
     pub(super) fn loads(&self, scene: &Scene, tolerance: f64) -> Resolved<Vec<Load>> {
         let each = |(i, keys): (usize, &LoadKeys)| {
             let path = KeyPath::item("load", i);
-            let kind = match (keys.force, keys.traction, &keys.per_point) {
-                (Some(f), None, None) => LoadKind::Force(Vector::from(f)),
-                (None, Some(t), None) => LoadKind::Traction(Vector::from(t)),
-                (None, None, Some(forces)) => {
+            let kind = match (keys.force, keys.traction, keys.pressure, &keys.per_point) {
+                (Some(f), None, None, None) => LoadKind::Force(Vector::from(f)),
+                (None, Some(t), None, None) => LoadKind::Traction(Vector::from(t)),
+                (None, None, Some(p), None) if keys.select.crack.is_some() => LoadKind::FacePressure(Vec::new(), p),
+                (None, None, Some(p), None) => LoadKind::Pressure(p),
+                (None, None, None, Some(forces)) => {
                     LoadKind::PerPoint(forces.iter().map(|f| (Point::from(f.at), Vector::from(f.force))).collect())
                 }
                 _ => {
-                    let message = "a load needs exactly one of `force`, `traction` and `per_point`";
+                    let message = "a load needs exactly one of `force`, `traction`, `pressure` and `per_point`";
                     return Err(SceneFault::new(path, message, "keep one of them, or write several `[[load]]`"));
                 }
             };
-            Ok(Load {
-                selection: self.selection(&path, &keys.select, scene, tolerance)?,
-                kind,
-                curve: curve(&path, &keys.curve, keys.ease)?,
-            })
+            let selection = match &kind {
+                LoadKind::FacePressure(..) => faces_alone(&path, &keys.select)?,
+                _ => self.selection(&path, &keys.select, scene, tolerance)?,
+            };
+            Ok(Load { selection, kind, curve: curve(&path, &keys.curve, keys.ease)? })
         };
         self.document.load.iter().enumerate().map(each).collect()
+    }
+
+    /// Finds the cracks whose faces loads press on.
+    pub(super) fn pressed_cracks(&self, scene: &mut Scene) -> Resolved<()> {
+        for (i, (keys, load)) in self.document.load.iter().zip(&mut scene.loads).enumerate() {
+            if let (LoadKind::FacePressure(cracks, _), Some(name)) = (&mut load.kind, &keys.select.crack) {
+                *cracks =
+                    self.cracks_called(KeyPath::item("load", i).then("select").then("crack"), name, &scene.cracks)?;
+            }
+        }
+        Ok(())
     }
 
     pub(super) fn supports(&self, scene: &Scene, tolerance: f64) -> Resolved<Vec<Support>> {
@@ -124,6 +138,21 @@ impl<'d> Resolver<'d> {
             }
         }
         Ok(())
+    }
+}
+
+/// The selection of a pressure on the faces of a crack, which names nothing else.
+fn faces_alone(path: &KeyPath, select: &Select) -> Resolved<Selection> {
+    let ways = [
+        ("edge", select.edge.is_some()),
+        ("body", select.body.is_some()),
+        ("region", select.region.is_some()),
+        ("near", select.near.is_some() || select.radius.is_some()),
+        ("svg", select.svg.is_some()),
+    ];
+    match ways.into_iter().find(|(_, given)| *given) {
+        Some((key, _)) => Err(combined(path.then("select"), &format!("`crack` and `{key}`"))),
+        None => Ok(Selection::All),
     }
 }
 

@@ -20,6 +20,15 @@ impl<'d> Resolver<'d> {
         tolerance: f64,
     ) -> Resolved<Selection> {
         let path = path.then("select");
+        if let Some(crack) = &select.crack {
+            let message =
+                format!("the faces of crack `{crack}` are selected, but only a load with a `pressure` acts on faces");
+            return Err(SceneFault::new(
+                path.then("crack"),
+                message,
+                "give the load a `pressure`, or select an edge, a region or points",
+            ));
+        }
         let bodies = match &select.body {
             Some(name) => Some(self.bodies(path.then("body"), Some(name), scene)?),
             None => None,
@@ -94,7 +103,7 @@ impl<'d> Resolver<'d> {
     }
 }
 
-fn combined(path: KeyPath, keys: &str) -> SceneFault {
+pub(super) fn combined(path: KeyPath, keys: &str) -> SceneFault {
     SceneFault::new(path, format!("a selection cannot combine {keys}"), "select by one of them")
 }
 
