@@ -220,15 +220,17 @@ impl Faces {
         self.set_outlines(&continuation.outlines);
     }
 
-    /// Checks what was read: that its numbers are finite, and that it fits the scene and the cracks.
+    /// Checks what was read: that its numbers are finite, that it fits the scene and the cracks, and that no crack
+    /// reaches farther than one may among so many `particles`.
     ///
     /// # Errors
     /// [`SimulationError::BadState`]
-    pub(super) fn check(&self, scene: &Scene, cracks: &Cracks) -> Fits {
+    pub(super) fn check(&self, scene: &Scene, cracks: &Cracks, particles: usize) -> Fits {
         let fits = |(now, crack): (&CrackNow, &Crack)| now.rest == crack.points && now.is_even();
         let same = self.cracks.len() == cracks.len() && self.cracks.iter().zip(cracks.iter()).all(fits);
         saved::ensure(same, "the place of a crack")?;
         self.cracks.iter().try_for_each(|now| saved::finite("a crack", now.numbers()))?;
+        saved::ensure(self.holds_together(scene.cell_size, particles), "the length of a crack")?;
         self.outlines.check(scene)?;
         self.outlines.vertices().try_for_each(|tracer| tracer.check(cracks.len()))
     }
@@ -239,9 +241,10 @@ impl Faces {
         segments.map(|w| ((w[1] - w[0]).abs() / cell_size).add_scalar(1.0).product()).sum()
     }
 
-    /// Whether cracks reach over no more cells than may lie in the bodies, and far more.
-    fn holds_together(&self, setup: &Setup) -> bool {
-        self.crack_cells(setup.scene.cell_size) <= (4.0 * setup.particles.len() as f64).max(1e6)
+    /// Whether cracks reach over no more cells than may lie in bodies of so many `particles`, and far more. A division
+    /// takes some hundred bytes for each.
+    fn holds_together(&self, cell_size: f64, particles: usize) -> bool {
+        self.crack_cells(cell_size) <= (4.0 * particles as f64).max(1e5)
     }
 
     /// Checks that no crack has been torn apart at `time` [s].
@@ -249,7 +252,7 @@ impl Faces {
     /// # Errors
     /// [`SimulationError::Unstable`] with the longest segment.
     pub(super) fn check_length(&self, setup: &Setup, time: f64) -> Result<(), SimulationError> {
-        if self.holds_together(setup) {
+        if self.holds_together(setup.scene.cell_size, setup.particles.len()) {
             return Ok(());
         }
         let segments = self.cracks.iter().flat_map(|now| now.position.windows(2));
@@ -268,7 +271,7 @@ impl Faces {
         let scene = &setup.scene;
         let reach = kernel::reach(scene.solver.kernel);
         // Lines that are torn too long end the next step; till then they lie at rest.
-        let holds = self.holds_together(setup);
+        let holds = self.holds_together(setup.scene.cell_size, setup.particles.len());
         let points = |i: usize, crack: &Crack| {
             let points = if holds { &self.cracks[i].position } else { &crack.points };
             points.clone()

@@ -146,7 +146,7 @@ impl Updated {
     ) -> Result<Self, SimulationError> {
         let (points, faces, external_work, reactions): (Points, Faces, f64, Vec<Reaction>) = saved::from_bytes(bytes)?;
         points.check(scene, particles.len())?;
-        faces.check(scene, cracks)?;
+        faces.check(scene, cracks, particles.len())?;
         saved::finite("its work", [&external_work])?;
         Reaction::check(&reactions, scene.supports.len())?;
         Self::around(Setup::new(scene, particles), points, faces, cracks, (external_work, reactions))
