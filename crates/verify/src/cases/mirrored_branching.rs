@@ -1,10 +1,10 @@
 //! Two branches of a crack on an axis of symmetry: each is the other's image to the end.
 //!
-//! 100 × 40 mm of soda glass (E = 72 GPa, ν = 0.3333, ρ = 2440 kg/m³, K_Ic = 0.523 MPa√m), plane stress, edge crack of 50
-//! mm, tension of 2 MPa at top and bottom from t = 0, after the example of crack branching of PDMATLAB2D (Jafarzadeh et
-//! al.). Reference: symmetry. At five spacings within 10 %, all with as many particles above the axis as below, the tip
-//! of the crack lies at five places within a cell; the case goes over places by itself, and others it is not moved to.
-//! Rounding grows with every reflection of a wave. Cells are counted over half the height.
+//! 100 × 40 mm of soda glass (E = 72 GPa, ν = 0.3333, ρ = 2440 kg/m³, K_Ic = 0.523 MPa√m), plane stress, edge crack of
+//! 50 mm, tension of 2 MPa at top and bottom from t = 0, after the example of crack branching of PDMATLAB2D (Jafarzadeh
+//! et al.). Reference: symmetry. At five spacings within 10 %, all with as many particles above the axis as below, the
+//! tip of the crack lies at five places within a cell; the case goes over places by itself, and others it is not moved
+//! to. Rounding grows with every reflection of a wave. Cells are counted over half the height.
 
 use crate::case::{Case, Options};
 use crate::placed::Placed;

@@ -1,9 +1,9 @@
 //! What a crack through a plate that is pulled apart takes: G_c for its length, at any length of steps.
 //!
-//! The example `pull`: 20 × 20 m of PMMA (E = 2.94 GPa, ν = 0.3, ρ = 1190 kg/m³, K_Ic = 1.2 MPa√m), plane strain, an edge
-//! crack of 4 m from the top, pulled by 20 MN/m at the left and the right. Reference: the energy balance, energy taken =
-//! ∫ G_c da (Griffith 1921), and symmetry, by which the crack leaves in the middle of the lower edge. Cells are counted
-//! over the height.
+//! The example `pull`: 20 × 20 m of PMMA (E = 2.94 GPa, ν = 0.3, ρ = 1190 kg/m³, K_Ic = 1.2 MPa√m), plane strain, an
+//! edge crack of 4 m from the top, pulled by 20 MN/m at the left and the right. Reference: the energy balance, energy
+//! taken = ∫ G_c da (Griffith 1921), and symmetry, by which the crack leaves in the middle of the lower edge. Cells are
+//! counted over the height.
 
 use crate::case::{Case, Options};
 use crate::problem::{Problem, material, rectangle};
