@@ -29,7 +29,7 @@ pub(crate) fn run_widest<L: Loop>(numbers: L) -> L::Output {
     numbers.run()
 }
 
-/// The widest instructions that the machine has: what [`run_widest`] chooses.
+/// The widest instructions that the machine has: what the rows of a step are computed with.
 pub fn widest_instructions() -> &'static str {
     #[cfg(all(feature = "wide", target_arch = "x86_64"))]
     match pulp::Arch::new() {
