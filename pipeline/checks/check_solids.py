@@ -3,9 +3,10 @@
     pip install meshio trimesh numpy networkx scipy
     python check_solids.py out/manifest.json ...
 
-Every PLY must be readable by meshio; every solid must be watertight, consistently wound and of
-volume = area x thickness within 1e-6 relative. trimesh merges equal vertices for that; normals and
-texture coordinates are ignored (merge_norm, merge_tex), because hard edges need split vertices.
+Every PLY must be readable by meshio; every object (a node of a GLB file, the vertices of one `piece` of a PLY file) must
+be watertight and consistently wound, and all of a file together of volume = area x thickness within 1e-6 relative. trimesh
+merges equal vertices for that, of each object by itself, because objects may touch; normals and texture coordinates are
+ignored, because hard edges need split vertices.
 """
 
 import json
@@ -15,6 +16,7 @@ import sys
 import meshio
 import numpy
 import trimesh
+from glb import Glb
 
 SOLID_PARTS = {"cracked", "body", "collider"}
 RELATIVE = 1e-6
@@ -27,17 +29,17 @@ def solid(vertices, faces):
     return mesh, scale
 
 
-def read(path):
-    """Vertices and faces of a file, nothing merged; of a GLB file all nodes and primitives joined."""
-    scene = trimesh.load_scene(path, process=False)
-    vertices, faces, first = [], [], 0
-    for name in scene.graph.nodes_geometry:
-        transform, geometry = scene.graph[name]
-        mesh = scene.geometry[geometry]
-        vertices.append(trimesh.transformations.transform_points(mesh.vertices, transform))
-        faces.append(mesh.faces + first)
-        first += len(mesh.vertices)
-    return numpy.concatenate(vertices), numpy.concatenate(faces)
+def objects(path):
+    """Vertices and faces of each object of a file, nothing merged."""
+    if path.suffix == ".ply":
+        mesh = meshio.read(path)
+        faces = numpy.concatenate([block.data for block in mesh.cells])
+        piece = numpy.asarray(mesh.point_data.get("piece", numpy.zeros(len(mesh.points))))
+        for number in numpy.unique(piece):
+            yield mesh.points, faces[piece[faces[:, 0]] == number]
+        return
+    for _, _, vertices, faces in Glb(path).objects():
+        yield vertices, faces
 
 
 def check(folder, record):
@@ -51,15 +53,21 @@ def check(folder, record):
         faces = sum(len(block.data) for block in by_meshio.cells)
         if faces != record["triangles"]:
             problems.append(f"meshio reads {faces} of {record['triangles']} triangles")
+    else:
+        faces = sum(len(mesh.faces) for mesh in trimesh.load_scene(path, process=False).geometry.values())
+        if faces != record["triangles"]:
+            problems.append(f"trimesh reads {faces} of {record['triangles']} triangles")
     if record["part"] not in SOLID_PARTS or record["triangles"] == 0:
         return problems
-    mesh, scale = solid(*read(path))
-    if not mesh.is_watertight:
-        problems.append("not watertight")
-    if not mesh.is_winding_consistent:
-        problems.append("not consistently wound")
+    volume = 0.0
+    for number, (vertices, faces) in enumerate(objects(path)):
+        mesh, scale = solid(vertices, faces)
+        if not mesh.is_watertight:
+            problems.append(f"object {number} is not watertight")
+        if not mesh.is_winding_consistent:
+            problems.append(f"object {number} is not consistently wound")
+        volume += mesh.volume * scale**3
     expected = record["area"] * record["thickness"]
-    volume = mesh.volume * scale**3
     if not abs(volume - expected) <= RELATIVE * expected:
         problems.append(f"volume {volume!r} instead of {expected!r}")
     return problems
