@@ -53,7 +53,7 @@ use colliders::Colliders;
 use contact::Contacts;
 use field_vectors::FieldVectors;
 use fissure_plane::{Point, Vector};
-use fissure_scene::{CrackFrame, OutlineFrame, ParticleFrame, Scene};
+use fissure_scene::{CrackEnd, CrackFrame, OutlineFrame, ParticleFrame, Scene};
 use lattice::{Lattice, Layout};
 use loads::Loads;
 use look::Look;
@@ -301,7 +301,10 @@ impl Solver for Total {
         let units = TieUnits::of(&self.lattice);
         let held = self.ties.held(&self.motion, units);
         let divides = changed.iter().any(|id| id.crack >= points_before.len());
-        let lost = self.lattice.recut(cracks, &boxes, divides, &mut self.motion);
+        let mut lost = self.lattice.recut(cracks, &boxes, divides, &mut self.motion);
+        if changed.iter().any(|&id| cracks.end(id) != CrackEnd::Tip) {
+            lost += self.lattice.seat_more_riders(&boxes, &mut self.motion);
+        }
         let has_mouthed = self.probes.refresh(&self.lattice, cracks, changed, &boxes);
         let near = Near::new(&self.lattice, &boxes, cracks, changed, &points_before);
         self.loads.refresh(&near, &self.scene, &self.lattice, cracks);

@@ -36,11 +36,11 @@ struct FieldChange {
 
 /// How the weight of one particle at one node moves between the fields of the node.
 #[derive(Debug, Clone)]
-struct WeightChange {
+pub(super) struct WeightChange {
     /// (field, change of weight); the changes add up to zero.
-    moved: Vec<(u32, f64)>,
+    pub(super) moved: Vec<(u32, f64)>,
     /// Mass of the particle [kg/m].
-    mass: f64,
+    pub(super) mass: f64,
 }
 
 /// The regions in which stencils may change when the ends `changed` have.
@@ -147,7 +147,7 @@ impl Lattice {
 
     /// Moves weights between the fields of nodes, and mass, momentum and displacement with them. Returns the kinetic
     /// energy that is lost [J/m].
-    fn move_weights(&mut self, changes: &[WeightChange], divides: bool, motion: &mut Motion) -> f64 {
+    pub(super) fn move_weights(&mut self, changes: &[WeightChange], divides: bool, motion: &mut Motion) -> f64 {
         self.layout.mass.resize(self.field_count(), 0.0);
         motion.resize(self.field_count());
         let field_changes = field_changes(changes, motion);

@@ -1,12 +1,15 @@
-//! Particles between a crack and an outline that nothing holds.
+//! Particles between a crack and an outline, or between two cracks, that nothing holds.
 //!
 //! What [`crate::loose`] says of corners goes for those as well that a crack makes: a particle that is alone on its
 //! side of the crack in its cell, and shares too few fields with others, flaps without any strain. It rides on the
 //! nearest particle of its side: its volume and its mass count as if they were there, and its own fields are gone.
 
 use super::lattice::Lattice;
+use super::motion::Motion;
+use super::recut::WeightChange;
 use crate::grid::entries::Entry;
 use crate::saved::{self, Fits};
+use fissure_plane::{Matrix, Point, Vector};
 use serde::{Deserialize, Serialize};
 
 /// Rounds in which those are found that lose hold with others.
@@ -14,6 +17,9 @@ const ROUNDS: usize = 4;
 
 /// A host is not farther away than so many spacings of particles along an axis.
 const REACH: i32 = 3;
+
+/// So many cells within what is cut anew all particles are known that share a field with another.
+const MARGIN: f64 = 3.0;
 
 /// Who rides on whom: (rider, host), riders rising.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -51,10 +57,96 @@ impl Lattice {
         // Those that a crack or an outline has given a stencil of their own.
         let near =
             |&p: &usize| self.layout.cut.entries_of(p).is_some() && self.division.is_near(self.particles.rest[p]);
-        let mut left: Vec<usize> = (0..self.particles.len()).filter(near).collect();
+        let loose = self.loose_among((0..self.particles.len()).filter(near).collect(), &mut seen);
+        let riders = loose.iter().filter_map(|&p| Some((p as u32, self.nearest_host(p, &loose)? as u32))).collect();
+        self.layout.riders = Riders(riders);
+        let stencils = loose.into_iter().map(|p| (p, self.make_entries(p))).collect();
+        self.layout.cut.replace(stencils);
+    }
+
+    /// Puts the particles on others that a crack leaves without hold which has come to its end, at an outline or at
+    /// another crack, within `boxes`; their mass and momentum go along. Those that ride already change where their host
+    /// has got to the other side. Returns the kinetic energy that is lost [J/m].
+    pub(super) fn seat_more_riders(&mut self, boxes: &[(Point, Point)], motion: &mut Motion) -> f64 {
+        if !self.has_rows() {
+            return 0.0;
+        }
+        let mut around: Vec<usize> = boxes.iter().flat_map(|&(low, high)| self.particles.in_box(low, high)).collect();
+        around.sort_unstable();
+        around.dedup();
+        let mut seen = vec![0_u32; self.field_count()];
+        let mut reader = self.reader();
+        for &p in around.iter().filter(|&&p| self.layout.riders.host(p).is_none()) {
+            reader.for_each_entry(p, |field, w, _| seen[field] += u32::from(w > 0.0));
+        }
+        let margin = Vector::repeat(MARGIN * self.grid.cell_size);
+        let is_within = |p: Point| boxes.iter().any(|(low, high)| p >= low + margin && p <= high - margin);
+        let near = |&p: &usize| {
+            let place = self.particles.rest[p];
+            self.layout.riders.host(p).is_none()
+                && self.layout.cut.entries_of(p).is_some()
+                && self.division.is_near(place)
+                && is_within(place)
+        };
+        let loose = self.loose_among(around.iter().copied().filter(near).collect(), &mut seen);
+        let loses_host = |&p: &usize| {
+            let body = self.particles.body[p];
+            self.layout.riders.host(p).is_some_and(|host| {
+                loose.binary_search(&host).is_ok()
+                    || self.is_across(body, self.particles.rest[p], self.particles.rest[host])
+            })
+        };
+        let moved: Vec<usize> =
+            around.into_iter().filter(|p| loose.binary_search(p).is_ok() || loses_host(p)).collect();
+        self.seat(&moved, motion)
+    }
+
+    /// Puts particles on others, with their mass and momentum. Returns the kinetic energy that is lost [J/m].
+    fn seat(&mut self, moved: &[usize], motion: &mut Motion) -> f64 {
+        let mut riding: Vec<usize> = self.layout.riders.0.iter().map(|&(rider, _)| rider as usize).collect();
+        riding.extend(moved);
+        riding.sort_unstable();
+        riding.dedup();
+        let hosts: Vec<(usize, usize)> =
+            moved.iter().filter_map(|&p| Some((p, self.nearest_host(p, &riding)?))).collect();
+        if hosts.is_empty() {
+            return 0.0;
+        }
+        let mut reader = self.reader();
+        let strains: Vec<Matrix> = hosts.iter().map(|&(p, _)| reader.strain(p, &motion.displacement)).collect();
+        let riders = &mut self.layout.riders.0;
+        riders.retain(|&(rider, _)| hosts.iter().all(|&(p, _)| p != rider as usize));
+        riders.extend(hosts.iter().map(|&(p, host)| (p as u32, host as u32)));
+        riders.sort_unstable();
+        let stencils: Vec<(usize, Vec<Entry>)> = hosts.iter().map(|&(p, _)| (p, self.make_entries(p))).collect();
+        let changes: Vec<WeightChange> = stencils.iter().map(|(p, new)| self.whole_change(*p, new)).collect();
+        let lost = self.move_weights(&changes, false, motion);
+        self.layout.cut.replace(stencils);
+        for (&(p, _), strain) in hosts.iter().zip(strains) {
+            let misfit = strain - self.reader().gradient(p, &motion.displacement);
+            self.layout.cut.set_misfit(p, misfit);
+        }
+        self.invert_masses();
+        lost
+    }
+
+    /// How all weights of a particle move to the fields of `new`, whatever their nodes are.
+    fn whole_change(&self, particle: usize, new: &[Entry]) -> WeightChange {
+        let mut moved: Vec<(u32, f64)> = Vec::with_capacity(16);
+        let mut add = |field: u32, w: f64| match moved.iter_mut().find(|x| x.0 == field) {
+            Some(x) => x.1 += w,
+            None => moved.push((field, w)),
+        };
+        self.reader().for_each_entry(particle, |field, w, _| add(field as u32, -w));
+        new.iter().for_each(|e| add(e.field, e.weight));
+        WeightChange { moved, mass: self.particles.mass[particle] }
+    }
+
+    /// Those of `left`, rising, that are loose, rising. `seen`: how many particles have each field.
+    fn loose_among(&self, mut left: Vec<usize>, seen: &mut [u32]) -> Vec<usize> {
         let mut loose: Vec<usize> = Vec::new();
         for _ in 0..ROUNDS {
-            let found: Vec<usize> = left.iter().copied().filter(|&p| self.is_loose(p, &seen, &loose)).collect();
+            let found: Vec<usize> = left.iter().copied().filter(|&p| self.is_loose(p, seen, &loose)).collect();
             if found.is_empty() {
                 break;
             }
@@ -65,10 +157,7 @@ impl Lattice {
             loose.extend(found);
             loose.sort_unstable();
         }
-        let riders = loose.iter().filter_map(|&p| Some((p as u32, self.nearest_host(p, &loose)? as u32))).collect();
-        self.layout.riders = Riders(riders);
-        let stencils = loose.into_iter().map(|p| (p, self.make_entries(p))).collect();
-        self.layout.cut.replace(stencils);
+        loose
     }
 
     fn entries(&self, particle: usize) -> &[Entry] {
@@ -115,12 +204,14 @@ fn own_fields(entries: &[Entry]) -> impl Iterator<Item = usize> {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use crate::crack::cracks::Cracks;
+    use crate::crack::cracks::{Cracks, TipId};
     use crate::particles::Particles;
+    use crate::solver::Solver;
     use crate::test_scenes::{add_crack, free_body, rectangle};
     use crate::total::field_vectors::FieldVectors;
     use crate::total::{Total, internal_forces};
-    use fissure_scene::{Formulation, Kernel, TipDivision};
+    use fissure_plane::Point;
+    use fissure_scene::{CrackEnd, End, Formulation, Kernel, Scene, TipDivision};
     use std::sync::Arc;
 
     /// Modes of the linearised lattice that take less than 1e-5 of the stiffness of the stiffest, mass for mass.
@@ -145,23 +236,62 @@ mod tests {
         values.iter().filter(|&&value| value < 1e-5 * values.max()).count()
     }
 
+    /// A plate turned by `turn`, of a width of its own, with a crack from its left side to the middle.
+    fn cracked_plate(turn: nalgebra::Rotation2<f64>, width: f64) -> Scene {
+        let mut region = rectangle([0.0, 0.0], [width, 5.4]);
+        region.exterior.iter_mut().for_each(|p| *p = turn * *p);
+        let mut scene = free_body(region, 0.5);
+        scene.solver.formulation = Formulation::Total;
+        scene.solver.kernel = Kernel::Bilinear;
+        scene.solver.tip_division = TipDivision::PartlyCut;
+        let place = |x: f64, y: f64| (turn * Point::new(x, y)).into();
+        let mouth: [f64; 2] = place(0.0, 2.7);
+        // A mouth is a corner of the outline.
+        scene.bodies[0].region.exterior.push(mouth.into());
+        add_crack(&mut scene, &[mouth, place(3.0, 2.7)]);
+        scene
+    }
+
+    /// Truth: two halves move without strain in three ways each, wherever the crack leaves that has grown across, and
+    /// momentum and mass stay what they are.
+    #[test]
+    fn a_plate_that_has_cracked_across_has_six_motions_without_strain() {
+        let mut riders = 0;
+        for k in 0..20 {
+            let (turn, width) = (nalgebra::Rotation2::new(0.317 * f64::from(k)), 7.0 + 0.13 * f64::from(k % 5));
+            let scene = cracked_plate(turn, width);
+            let mut cracks = Cracks::of_scene(&scene);
+            let mut total = Total::new(&scene, Arc::new(Particles::fill(&scene).unwrap()), &cracks).unwrap();
+            total.motion.velocity.iter_mut().flatten().enumerate().for_each(|(d, v)| *v = (d as f64).sin());
+            let sums = |total: &Total| {
+                let mass = &total.lattice.layout.mass;
+                let along =
+                    |axis: usize| mass.iter().zip(&total.motion.velocity[axis]).map(|(m, v)| m * v).sum::<f64>();
+                [mass.iter().sum(), along(0), along(1)]
+            };
+            let (before, seated) = (sums(&total), total.lattice.layout.riders.0.len());
+            let tip = TipId::new(0, End::End);
+            let way: Vec<Point> =
+                (1..=16).map(|j| turn * Point::new(3.0 + (width - 3.0) * f64::from(j) / 16.0, 2.7)).collect();
+            cracks.grow(tip, &way);
+            cracks.set_end(tip, CrackEnd::Mouth);
+            total.recut(&cracks, &[tip]);
+            riders += total.lattice.layout.riders.0.len() - seated;
+            assert_eq!(modes_without_strain(&total), 6, "turned by {:.3} rad", turn.angle());
+            for (a, b) in before.into_iter().zip(sums(&total)) {
+                assert!((a - b).abs() < 1e-9 * before[0], "turned by {:.3} rad: {a} and {b}", turn.angle());
+            }
+        }
+        assert!(riders > 0, "nobody rides");
+    }
+
     /// Truth: a plate with a crack that does not part it moves without strain in three ways, by shifts and by a turn,
     /// counted by the eigenvalues of its stiffness.
     #[test]
     fn a_cracked_plate_has_three_motions_without_strain() {
         for k in 0..20 {
             let turn = nalgebra::Rotation2::new(0.317 * f64::from(k));
-            let mut region = rectangle([0.0, 0.0], [7.0 + 0.13 * f64::from(k % 5), 5.4]);
-            region.exterior.iter_mut().for_each(|p| *p = turn * *p);
-            let mut scene = free_body(region, 0.5);
-            scene.solver.formulation = Formulation::Total;
-            scene.solver.kernel = Kernel::Bilinear;
-            scene.solver.tip_division = TipDivision::PartlyCut;
-            let place = |x: f64, y: f64| (turn * fissure_plane::Point::new(x, y)).into();
-            let mouth: [f64; 2] = place(0.0, 2.7);
-            // A mouth is a corner of the outline.
-            scene.bodies[0].region.exterior.push(mouth.into());
-            add_crack(&mut scene, &[mouth, place(3.0, 2.7)]);
+            let scene = cracked_plate(turn, 7.0 + 0.13 * f64::from(k % 5));
             let cracks = Cracks::of_scene(&scene);
             let total = Total::new(&scene, Arc::new(Particles::fill(&scene).unwrap()), &cracks).unwrap();
             assert_eq!(modes_without_strain(&total), 3, "turned by {:.3} rad", turn.angle());
