@@ -19,6 +19,9 @@ const NUDGE: f64 = 1e-6;
 /// wedge between the two wherever they meet at more than 6°.
 const WEDGE: f64 = 0.1;
 
+/// How far a face sees stencils, in cells: particles within six of their spacings, and their nodes.
+const SEEN: f64 = 5.0;
+
 impl Lattice {
     /// Probes of both faces of a crack.
     fn face_probes(&self, crack: &Crack) -> Faces {
@@ -26,8 +29,35 @@ impl Lattice {
             .map(|side| (0..crack.points.len()).map(|k| self.face_probe(crack, k, side)).collect())
     }
 
+    /// Probes of both faces of a crack that had those of `before`, which stay where nothing around them `has_changed`.
+    fn face_probes_after(&self, crack: &Crack, before: &mut Faces, has_changed: impl Fn(Point) -> bool) -> Faces {
+        let points = &crack.points;
+        let added = points.len().saturating_sub(before[0].len());
+        // By how much the numbers of the points have moved up. Its ends may have moved, the points between stay.
+        let continues = |&shift: &usize| before[0].get(1).is_some_and(|old| points.get(shift + 1) == Some(&old.rest));
+        let shift = (0..=added).find(continues).unwrap_or(points.len());
+        let mut faces = Faces::default();
+        for (side, (new, old)) in [Side::Above, Side::Below].into_iter().zip(faces.iter_mut().zip(before)) {
+            new.extend((0..points.len()).map(|k| {
+                let nudged = self.nudged(crack, k, side);
+                match k.checked_sub(shift).and_then(|k| old.get_mut(k)) {
+                    Some(old) if old.rest == points[k] && old.nudged == nudged && !has_changed(old.rest) => {
+                        Probe { entries: std::mem::take(&mut old.entries), ..*old }
+                    }
+                    _ => self.probe(crack.body, points[k], nudged),
+                }
+            }));
+        }
+        faces
+    }
+
     /// Probe of one face at point `k` of a crack.
     fn face_probe(&self, crack: &Crack, k: usize, side: Side) -> Probe {
+        self.probe(crack.body, crack.points[k], self.nudged(crack, k, side))
+    }
+
+    /// Where the side of a face is decided at point `k` of a crack: a hair beside it.
+    fn nudged(&self, crack: &Crack, k: usize, side: Side) -> Point {
         let outward = left_at(&crack.points, k) * side.sign();
         let last = crack.points.len() - 1;
         let is_junction = |end: End| matches!(crack.end(end), CrackEnd::Junction { .. });
@@ -37,7 +67,7 @@ impl Lattice {
             _ if k == last && is_junction(End::End) => outward * WEDGE - crack.last_direction(End::End),
             _ => outward,
         };
-        self.probe(crack.body, crack.points[k], crack.points[k] + toward * (NUDGE * self.grid.cell_size))
+        crack.points[k] + toward * (NUDGE * self.grid.cell_size)
     }
 }
 
@@ -101,13 +131,14 @@ impl Probes {
         changed: &[TipId],
         boxes: &[(Point, Point)],
     ) -> bool {
-        // Faces: a changed crack anew (points have been added), the others where they lie in a box.
         let within = |p: Point| boxes.iter().any(|(low, high)| p >= *low && p <= *high);
+        let seen = Vector::repeat(SEEN * lattice.grid.cell_size);
+        let sees = |p: Point| boxes.iter().any(|(low, high)| p >= low - seen && p <= high + seen);
         for (index, crack) in cracks.iter().enumerate() {
             if index >= self.faces.len() {
                 self.faces.push(lattice.face_probes(crack));
-            } else if changed.iter().any(|id| id.crack == index) || crack.points.iter().any(|&p| within(p)) {
-                self.faces[index] = lattice.face_probes(crack);
+            } else if changed.iter().any(|id| id.crack == index) || crack.points.iter().any(|&p| sees(p)) {
+                self.faces[index] = lattice.face_probes_after(crack, &mut self.faces[index], sees);
             }
         }
         for probe in self.outlines.vertices_mut().filter(|probe| within(probe.rest)) {
