@@ -15,8 +15,8 @@
 //! 5. `pinch`: contours that touch in a point are parted, so that the solid is manifold for every reader.
 //! 6. `triangulate`, `extrude`: caps and walls, with normals, texture coordinates, velocities and material slots.
 //! 7. [`Mesh::check`]: closed, manifold, oriented, volume = area × thickness, in the precision of the file.
-//! 8. `glb`, `ply`: the bytes of files; `write`, `manifest`: the files, with the feature `files`, which is on by
-//!    default.
+//! 8. `formats`: the bytes of files, one module per format; `write`, `manifest`: the files, with the feature `files`,
+//!    which is on by default.
 //!
 //! Promised: every solid that is returned has passed the check, and each fragment that holds a particle is one solid in
 //! every frame, unless `smallest_fragment` leaves it out. Not promised: that solids that the simulation lets overlap
@@ -31,21 +31,18 @@ mod edges;
 mod error;
 mod extrude;
 mod faces;
-mod glb;
+mod formats;
 mod held_open;
 #[cfg(feature = "files")]
 mod manifest;
 mod mesh;
 mod opening;
 mod options;
-#[cfg(feature = "files")]
-mod origin;
 mod outline;
 mod packed;
 mod particles;
 mod pieces;
 mod pinch;
-mod ply;
 mod post;
 mod provenance;
 #[cfg(feature = "files")]
@@ -61,12 +58,11 @@ mod write;
 mod write_error;
 
 pub use error::PostError;
-pub use glb::{GlbError, to_glb};
+pub use formats::{FormatError, to_glb, to_ply};
 #[cfg(feature = "files")]
 pub use manifest::Manifest;
 pub use mesh::{Content, Mesh, MeshDefect, Vertex};
 pub use options::PostOptions;
-pub use ply::to_ply;
 pub use post::{FrameMeshes, post_frame};
 pub use provenance::Provenance;
 #[cfg(feature = "files")]

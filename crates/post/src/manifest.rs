@@ -1,6 +1,6 @@
 //! The list of written files.
 
-use crate::origin::{TOOL, is_ours};
+use crate::formats::{TOOL, is_ours};
 use crate::provenance::Provenance;
 use crate::record::{FileRecord, file_name};
 use crate::write_error::WriteError;

@@ -1,5 +1,6 @@
 //! What is said of a mesh file: its name, and its line in the list.
 
+use crate::formats::file_format;
 use fissure_scene::{Format, Part};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -36,16 +37,13 @@ pub struct FileRecord {
 
 /// Name of the file of one part, frame and format.
 pub fn file_name(prefix: &str, part: Part, frame: i64, format: Format) -> String {
-    let part = match part {
+    let suffix = match part {
         Part::Cracked => "",
         Part::Body => "_body",
         Part::Faces => "_faces",
         Part::Collider => "_collider",
         Part::Particles => "_particles",
     };
-    let extension = match format {
-        Format::Glb => "glb",
-        Format::Ply => "ply",
-    };
-    format!("{prefix}{part}.{frame:04}.{extension}")
+    let extension = file_format(format).extension(part);
+    format!("{prefix}{suffix}.{frame:04}.{extension}")
 }

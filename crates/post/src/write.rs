@@ -1,9 +1,7 @@
 //! Mesh files of a sequence.
 
-use crate::glb::to_glb;
+use crate::formats::{Shot, file_format, is_ours};
 use crate::mesh::{Content, Mesh};
-use crate::origin::is_ours;
-use crate::ply::to_ply;
 use crate::post::FrameMeshes;
 use crate::record::{FileRecord, file_name};
 use crate::write_error::WriteError;
@@ -26,15 +24,12 @@ pub fn write_frame(
 ) -> Result<Vec<FileRecord>, WriteError> {
     let mut records = Vec::with_capacity(formats.len() * meshes.parts.len());
     for (part, objects) in &meshes.parts {
+        let shot = Shot { objects, provenance: &meshes.provenance, up: meshes.up };
         for &format in formats {
             let file = file_name(prefix, *part, meshes.provenance.frame, format);
             let path = folder.place(&file)?;
-            let bytes = match format {
-                Format::Glb => to_glb(objects, &meshes.provenance)
-                    .map_err(|cause| WriteError::Glb { file: file.clone(), cause })?,
-                Format::Ply => to_ply(objects, &meshes.provenance, meshes.up)
-                    .map_err(|cause| WriteError::Ply { file: file.clone(), cause })?,
-            };
+            let bytes =
+                file_format(format).frame(&shot).map_err(|cause| WriteError::Format { file: file.clone(), cause })?;
             if folder.read(&file)?.is_some_and(|there| !is_ours(format, &there)) {
                 return Err(WriteError::Foreign { path });
             }

@@ -1,6 +1,6 @@
 //! Why files cannot be written.
 
-use crate::glb::GlbError;
+use crate::formats::FormatError;
 use fissure_files::FileError;
 use std::path::PathBuf;
 
@@ -17,21 +17,13 @@ pub enum WriteError {
         /// The file.
         path: PathBuf,
     },
-    /// The meshes do not fit into a GLB file.
+    /// The meshes do not fit into the format.
     #[error("cannot write `{file}`: {cause}")]
-    Glb {
+    Format {
         /// The file.
         file: String,
         /// Why.
-        cause: GlbError,
-    },
-    /// The meshes cannot be written as PLY.
-    #[error("cannot write `{file}`: {cause}")]
-    Ply {
-        /// The file.
-        file: String,
-        /// Why.
-        cause: std::io::Error,
+        cause: FormatError,
     },
     /// The list cannot be written as JSON.
     #[error("cannot write the list of meshes: {0}")]
@@ -44,8 +36,8 @@ impl WriteError {
         match self {
             Self::File(error) => error.remedy(),
             Self::Foreign { .. } => "move it away, or choose another folder with --output",
-            Self::Glb { .. } => "write PLY, or use a larger `grid.particle_spacing`",
-            Self::Ply { .. } | Self::Json(_) => "please report it with the scene file",
+            Self::Format { cause, .. } => cause.remedy(),
+            Self::Json(_) => "please report it with the scene file",
         }
     }
 }

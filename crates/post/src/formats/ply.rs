@@ -1,10 +1,11 @@
 //! Binary little-endian PLY.
 
+use super::{FileFormat, FormatError, Shot};
 use crate::mesh::{Content, Mesh};
 use crate::packed::{PackedVertex, compact, pack};
 use crate::provenance::Provenance;
 use crate::slot::Slot;
-use fissure_scene::UpAxis;
+use fissure_scene::{Part, UpAxis};
 use ply_rs_bw::ply::{
     Addable, ElementDef, Encoding, Ply, PropertyAccess, PropertyDef, PropertyType::List, PropertyType::Scalar,
     ScalarType,
@@ -22,8 +23,8 @@ const POINT_PROPERTIES: [&str; 7] = ["x", "y", "z", "vx", "vy", "vz", "piece"];
 /// read binary files with face properties. Comments say where the file comes from.
 ///
 /// # Errors
-/// When the writer refuses, which for a buffer in memory means a bug of ours.
-pub fn to_ply(meshes: &[Mesh], provenance: &Provenance, up: UpAxis) -> std::io::Result<Vec<u8>> {
+/// When the writer refuses, which for a buffer in memory means a mistake of ours.
+pub fn to_ply(meshes: &[Mesh], provenance: &Provenance, up: UpAxis) -> Result<Vec<u8>, FormatError> {
     let points_only = !meshes.is_empty() && meshes.iter().all(|m| m.content == Content::Points);
     let (mut vertices, mut faces) = (Vec::new(), Vec::new());
     for mesh in meshes {
@@ -50,6 +51,28 @@ pub fn to_ply(meshes: &[Mesh], provenance: &Provenance, up: UpAxis) -> std::io::
     let mut bytes = Vec::new();
     Writer::new().write_ply(&mut bytes, &mut ply)?;
     Ok(bytes)
+}
+
+/// Binary PLY.
+pub(crate) struct Polygons;
+
+impl FileFormat for Polygons {
+    fn extension(&self, _: Part) -> &'static str {
+        "ply"
+    }
+
+    fn frame(&self, shot: &Shot<'_>) -> Result<Vec<u8>, FormatError> {
+        to_ply(shot.objects, shot.provenance, shot.up)
+    }
+
+    /// The first comment of the header.
+    #[cfg(feature = "files")]
+    fn maker(&self, bytes: &[u8]) -> Option<String> {
+        let mut lines = bytes.strip_prefix(b"ply\n")?.split(|&byte| byte == b'\n');
+        let comment =
+            lines.by_ref().take_while(|line| *line != b"end_header").find_map(|l| l.strip_prefix(b"comment "));
+        Some(String::from_utf8_lossy(comment?).into_owned())
+    }
 }
 
 /// One line each; a line break in a name would end the comment.

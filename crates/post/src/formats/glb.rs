@@ -1,10 +1,11 @@
 //! Binary glTF 2.0: y up, one node per mesh, one primitive per material slot.
 
+use super::{FileFormat, FormatError, Shot};
 use crate::mesh::{Content, Mesh};
 use crate::packed::{PackedVertex, compact, pack};
 use crate::provenance::Provenance;
 use crate::slot::Slot;
-use fissure_scene::UpAxis;
+use fissure_scene::{Part, UpAxis};
 use gltf::binary::{Glb, Header};
 use gltf::json::accessor::{ComponentType, GenericComponentType, Type};
 use gltf::json::buffer::Target;
@@ -29,7 +30,7 @@ use std::collections::BTreeMap;
 ///
 /// # Errors
 /// When the file would be larger than the 4 GiB of the format.
-pub fn to_glb(meshes: &[Mesh], provenance: &Provenance) -> Result<Vec<u8>, GlbError> {
+pub fn to_glb(meshes: &[Mesh], provenance: &Provenance) -> Result<Vec<u8>, FormatError> {
     let mut document = Document::default();
     let mut nodes = Vec::new();
     for mesh in meshes {
@@ -52,18 +53,35 @@ pub fn to_glb(meshes: &[Mesh], provenance: &Provenance) -> Result<Vec<u8>, GlbEr
     container(serialize::to_vec(&root)?, binary)
 }
 
-/// Why a GLB file cannot be made.
-#[derive(Debug, thiserror::Error)]
-pub enum GlbError {
-    /// The format counts bytes in 32 bits.
-    #[error("the file would take {0} bytes, more than the 4 GiB a GLB file can hold; write PLY or fewer particles")]
-    TooLarge(usize),
-    /// The document could not be written as JSON.
-    #[error("the glTF document cannot be written as JSON: {0}")]
-    Json(#[from] json::Error),
-    /// The two could not be joined.
-    #[error("the glTF document and its data cannot be joined to a GLB file: {0}")]
-    Container(#[from] gltf::Error),
+/// Binary glTF.
+pub(crate) struct BinaryGltf;
+
+impl FileFormat for BinaryGltf {
+    fn extension(&self, _: Part) -> &'static str {
+        "glb"
+    }
+
+    fn frame(&self, shot: &Shot<'_>) -> Result<Vec<u8>, FormatError> {
+        to_glb(shot.objects, shot.provenance)
+    }
+
+    /// `asset.generator`: magic, version, length; then length, type and text of the JSON chunk.
+    #[cfg(feature = "files")]
+    fn maker(&self, bytes: &[u8]) -> Option<String> {
+        #[derive(serde::Deserialize)]
+        struct Document {
+            asset: Maker,
+        }
+        #[derive(serde::Deserialize)]
+        struct Maker {
+            generator: String,
+        }
+        let (head, rest) = bytes.split_first_chunk::<12>()?;
+        let (length, rest) = rest.split_first_chunk::<4>()?;
+        let text = rest.strip_prefix(b"JSON")?.get(..u32::from_le_bytes(*length) as usize)?;
+        let document: Document = json::deserialize::from_slice(text).ok()?;
+        head.starts_with(b"glTF").then_some(document.asset.generator)
+    }
 }
 
 /// What a whole object has in common; importers make it properties of the object.
@@ -74,11 +92,11 @@ struct ObjectExtras {
 }
 
 /// `value` as extras.
-fn extras(value: &impl Serialize) -> Result<Extras, GlbError> {
+fn extras(value: &impl Serialize) -> Result<Extras, FormatError> {
     Ok(Some(json::deserialize::from_str(&serialize::to_string(value)?)?))
 }
 
-fn asset(provenance: &Provenance) -> Result<Asset, GlbError> {
+fn asset(provenance: &Provenance) -> Result<Asset, FormatError> {
     Ok(Asset { generator: Some(provenance.tool.clone()), extras: extras(provenance)?, ..Asset::default() })
 }
 
@@ -92,7 +110,7 @@ struct Document {
 
 impl Document {
     /// Adds `mesh` with its node; a mesh without vertices adds nothing, the format has no empty meshes.
-    fn node(&mut self, mesh: &Mesh) -> Result<Option<Index<Node>>, GlbError> {
+    fn node(&mut self, mesh: &Mesh) -> Result<Option<Index<Node>>, FormatError> {
         let primitives = self.primitives(mesh);
         if primitives.is_empty() {
             return Ok(None);
@@ -238,11 +256,11 @@ fn material(slot: Slot) -> Material {
 }
 
 /// Joins the two chunks of a GLB file; one without `binary` has no second chunk.
-fn container(document: Vec<u8>, binary: Vec<u8>) -> Result<Vec<u8>, GlbError> {
+fn container(document: Vec<u8>, binary: Vec<u8>) -> Result<Vec<u8>, FormatError> {
     let chunk = |data: &[u8]| if data.is_empty() { 0 } else { 8 + data.len().next_multiple_of(4) };
     let length = 12 + chunk(&document) + chunk(&binary);
     // `Glb::to_vec` lets lengths beyond 32 bits wrap around.
-    let length = u32::try_from(length).map_err(|_| GlbError::TooLarge(length))?;
+    let length = u32::try_from(length).map_err(|_| FormatError::TooLarge(length))?;
     let bin = (!binary.is_empty()).then_some(binary.into());
     Ok(Glb { header: Header { magic: *b"glTF", version: 2, length }, json: document.into(), bin }.to_vec()?)
 }
