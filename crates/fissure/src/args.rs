@@ -59,6 +59,15 @@ pub(crate) enum Command {
                       fissure verify edge-crack --places 32   wherever it lies on the grid\n  \
                       fissure verify all                      the full table")]
     Verify(VerifyArguments),
+    /// Measure accuracy against time, and draw it: tables and figures for `docs/charts`.
+    ///
+    /// Each measurement is on the disk as soon as it is made. Interrupted, the same command goes on.
+    #[command(
+        after_help = "Examples:\n  fissure chart --quick            the shape of every chart, in a few minutes\n  \
+                      fissure chart accuracy           one chart in full\n\n\
+                      Times are those of all threads together; other programs that run at the same time still slow them down."
+    )]
+    Chart(ChartArguments),
     /// Print the JSON schema of scene files, for editors.
     #[command(after_help = "Example:\n  fissure schema > scene.schema.json")]
     Schema,
@@ -246,6 +255,35 @@ pub(crate) struct VerifyArguments {
     /// Threads to compute with [default: one per core]. The numbers do not depend on it.
     #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
+}
+
+/// Arguments of `chart`.
+#[derive(Debug, Args)]
+pub(crate) struct ChartArguments {
+    /// The chart [default: all].
+    #[arg(value_enum)]
+    pub(crate) name: Option<ChartName>,
+    /// Few and coarse runs, which show the shape.
+    #[arg(long)]
+    pub(crate) quick: bool,
+    /// Folder to write into; made when missing.
+    #[arg(long, value_name = "DIR", default_value = "docs/charts", value_hint = ValueHint::DirPath)]
+    pub(crate) output: PathBuf,
+    /// Threads to compute with [default: one per core].
+    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+}
+
+/// A chart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ChartName {
+    /// Errors against time, for each way to solve.
+    Accuracy,
+}
+
+impl ChartName {
+    /// All, in the order in which they are made.
+    pub(crate) const ALL: [Self; 1] = [Self::Accuracy];
 }
 
 /// How to speak.

@@ -2,6 +2,7 @@
 
 mod args;
 mod caution;
+mod chart;
 mod check;
 mod completions;
 mod drawn;
@@ -63,6 +64,7 @@ fn execute(command: &Command, interrupt: &Interrupt, report: &Report) -> Result<
         Command::Sim(arguments) => sim::sim(arguments, interrupt, report),
         Command::Post(arguments) => post::post(arguments, interrupt, report),
         Command::Verify(arguments) => verify::verify(arguments, report),
+        Command::Chart(arguments) => chart::chart(arguments, report),
         Command::Schema => schema::schema(),
         Command::Completions(arguments) => completions::completions(arguments),
         Command::Man(arguments) => man::man(arguments, report),

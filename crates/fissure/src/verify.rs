@@ -49,7 +49,7 @@ pub(crate) fn verify(arguments: &VerifyArguments, report: &Report) -> Result<Exi
 fn runs(case: &Case, arguments: &VerifyArguments, is_one_of_many: bool) -> impl Iterator<Item = Options> + use<> {
     let places = usize::from(arguments.places);
     let places = if is_one_of_many && case.is_long { places.div_ceil(4) } else { places };
-    let options = Options { cells: arguments.cells, places, seed: arguments.seed };
+    let options = Options { cells: arguments.cells, places, seed: arguments.seed, scheme: None };
     let is_coarser = places > 1 && arguments.cells.is_none() && case.family_cells != case.cells.1;
     is_coarser.then_some(Options { places: 1, ..options }).into_iter().chain([options])
 }

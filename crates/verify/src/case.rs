@@ -1,7 +1,9 @@
 //! What a reference case is and how it is run.
 
+use crate::cpu_time::cpu_time;
 use crate::family;
 use crate::report::{Progress, Report, Tally};
+use crate::scheme::Scheme;
 use fissure_sim::SimulationError;
 
 /// How a case is run.
@@ -14,11 +16,13 @@ pub struct Options {
     pub places: usize,
     /// Which places the others are.
     pub seed: u64,
+    /// How the scenes of the case are solved; none: as the case says, which is as the standard preset does.
+    pub scheme: Option<Scheme>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { cells: None, places: 1, seed: 1 }
+        Self { cells: None, places: 1, seed: 1, scheme: None }
     }
 }
 
@@ -79,7 +83,7 @@ impl Case {
     /// # Errors
     /// When the solver fails at the one place, or at all. A missed target is no error: the report says so.
     pub fn run(&self, options: &Options, progress: Progress<'_>) -> Result<Report, SimulationError> {
-        let started = std::time::Instant::now();
+        let (started, cpu) = (std::time::Instant::now(), cpu_time());
         let standard = if options.places > 1 { self.family_cells } else { self.cells.1 };
         let cells = options.cells_or(standard);
         let report = family::run(self.compute, &Options { cells: Some(cells), ..*options }, progress)?;
@@ -88,6 +92,7 @@ impl Case {
             about: self.about.into(),
             cells: (cells, self.cells.0),
             seconds: started.elapsed().as_secs_f64(),
+            cpu_seconds: (cpu_time() - cpu).as_secs_f64(),
             ..report
         })
     }

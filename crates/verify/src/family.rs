@@ -21,7 +21,7 @@ type Outcome = Result<Report, SimulationError>;
 pub(crate) fn run(compute: Compute, options: &Options, progress: Progress<'_>) -> Outcome {
     let count = options.places.max(1);
     if count == 1 {
-        let mut tally = Tally::new(Placement::NATURAL, progress);
+        let mut tally = Tally::new(Placement::NATURAL, progress).solved_by(options.scheme);
         compute(options, &mut tally)?;
         return Ok(tally.finish());
     }
@@ -35,7 +35,8 @@ pub(crate) fn run(compute: Compute, options: &Options, progress: Progress<'_>) -
                 break;
             }
             let mut say = |what: &str| lock(&progress)(&format!("place {} of {count}, {what}", index + 1));
-            let mut tally = Tally::new(Placement::draw(options.seed, index), &mut say);
+            let placement = Placement::draw(options.seed, index);
+            let mut tally = Tally::new(placement, &mut say).solved_by(options.scheme);
             let outcome = compute(options, &mut tally).map(|()| tally.finish());
             lock(&outcomes)[index] = Some(outcome);
         }

@@ -33,6 +33,7 @@
 
 mod case;
 mod cases;
+mod cpu_time;
 mod family;
 mod interpolate;
 mod list;
@@ -40,12 +41,17 @@ mod placed;
 mod placement;
 mod problem;
 mod report;
+mod scheme;
+mod study;
 #[cfg(test)]
 mod symmetry;
 mod table;
 
 pub use case::{Case, Options};
 pub use cases::edge_crack::{EdgeCrack, EdgeCrackResult};
+pub use cpu_time::cpu_time;
 pub use list::{CASES, find};
 pub use report::{Expected, Progress, Report, Row, Spread};
+pub use scheme::Scheme;
+pub use study::{Measure, STUDIES, Studied, Study};
 pub use table::{markdown, text};

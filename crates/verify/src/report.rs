@@ -3,6 +3,7 @@
 use crate::placed::{Moment, Placed};
 use crate::placement::Placement;
 use crate::problem::Problem;
+use crate::scheme::Scheme;
 use fissure_sim::SimulationError;
 use std::ops::ControlFlow;
 
@@ -111,6 +112,8 @@ pub struct Report {
     pub recuts: u64,
     /// Wall time of all runs [s].
     pub seconds: f64,
+    /// Time that the program has computed in the meantime, added up over its threads [s].
+    pub cpu_seconds: f64,
     /// What a reader should know besides.
     pub notes: Vec<String>,
 }
@@ -126,6 +129,7 @@ impl Report {
 pub(crate) struct Tally<'a> {
     progress: Progress<'a>,
     placement: Placement,
+    scheme: Option<Scheme>,
     report: Report,
     /// Runs that did not come to rest.
     unrested: u64,
@@ -134,7 +138,12 @@ pub(crate) struct Tally<'a> {
 impl<'a> Tally<'a> {
     /// For a run of the case at one place.
     pub(crate) fn new(placement: Placement, progress: Progress<'a>) -> Self {
-        Self { progress, placement, report: Report::default(), unrested: 0 }
+        Self { progress, placement, scheme: None, report: Report::default(), unrested: 0 }
+    }
+
+    /// With scenes solved by a scheme.
+    pub(crate) fn solved_by(self, scheme: Option<Scheme>) -> Self {
+        Self { scheme, ..self }
     }
 
     /// Whether the case is computed as it is drawn: what need not be done at every place is done there.
@@ -149,7 +158,10 @@ impl<'a> Tally<'a> {
 
     /// The simulation of a problem at the place of this run.
     pub(crate) fn set_up(&self, problem: &Problem) -> Result<Placed, SimulationError> {
-        Placed::new(&problem.scene, self.placement)
+        match &self.scheme {
+            Some(scheme) => Placed::new(&scheme.solve(&problem.scene), self.placement),
+            None => Placed::new(&problem.scene, self.placement),
+        }
     }
 
     /// Sets a problem up and brings it to rest.
