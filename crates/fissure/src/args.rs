@@ -3,6 +3,7 @@
 use crate::frame_set::FrameSet;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint, value_parser};
+use fissure_preview::SIZES;
 use fissure_scene::{Format, Part, UpAxis};
 use std::path::PathBuf;
 
@@ -52,6 +53,13 @@ pub(crate) enum Command {
         after_help = "Example:\n  fissure post out/pull/pull.take --thickness 0.2 --formats glb,ply --frames 1-45x2"
     )]
     Post(PostArguments),
+    /// Draw pictures of a run: frames as PNG, a contact sheet and a GIF.
+    #[command(
+        after_help = "Examples:\n  fissure preview out/pull                                  what a run looks like\n  \
+                      fissure preview out/pull --color stress --theme dark      where it is pulled and pressed\n  \
+                      fissure preview out/pull --frames 8,16,48 --pictures sheet  three frames side by side"
+    )]
+    Preview(PreviewArguments),
     /// Compute problems with known solutions and print what comes out beside what should.
     ///
     /// A missed target is printed as such and is no failure.
@@ -226,6 +234,79 @@ pub(crate) struct PostArguments {
     pub(crate) threads: Option<u16>,
 }
 
+/// Arguments of `preview`.
+#[derive(Debug, Args)]
+pub(crate) struct PreviewArguments {
+    /// The output folder of a run, or a take, a folder ending in `.take`.
+    #[arg(value_name = "RUN", value_hint = ValueHint::DirPath)]
+    pub(crate) run: PathBuf,
+    /// What to make: frames (a PNG each), sheet (a PNG of up to 12 frames side by side), gif.
+    #[arg(
+        long,
+        value_name = "WHAT,..",
+        value_delimiter = ',',
+        value_enum,
+        hide_possible_values = true,
+        default_value = "frames,sheet,gif"
+    )]
+    pub(crate) pictures: Vec<PictureKind>,
+    /// Frames to draw, e.g. `1-45x2` or `1,10,20-30` [default: all].
+    #[arg(long, value_name = "RANGE")]
+    pub(crate) frames: Option<FrameSet>,
+    /// What colours mean: fragment, stress (the largest principal one) or speed.
+    #[arg(long, value_name = "WHAT", value_enum, hide_possible_values = true, default_value_t = ColorBy::Fragment)]
+    pub(crate) color: ColorBy,
+    /// Light or dark.
+    #[arg(long, value_name = "THEME", value_enum, hide_possible_values = true, default_value_t = ThemeName::Light)]
+    pub(crate) theme: ThemeName,
+    /// Width of a picture in pixels; its height follows from what is in view.
+    #[arg(long, value_name = "PIXELS", default_value_t = 960, value_parser = value_parser!(u32).range(i64::from(*SIZES.start())..=i64::from(*SIZES.end())))]
+    pub(crate) size: u32,
+    /// Degrees by which the view is turned about the upright axis; below 0 to see right sides, above 0 left ones.
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_negative_numbers = true, value_parser = parse_turn)]
+    pub(crate) yaw: f64,
+    /// Degrees by which the eye is above the middle; below 0 to look from below.
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_negative_numbers = true, value_parser = parse_turn)]
+    pub(crate) pitch: f64,
+    /// Folder to write into [default: `preview` in the folder that holds the take].
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub(crate) output: Option<PathBuf>,
+    /// Threads to draw with [default: one per core]. The pictures do not depend on it.
+    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+}
+
+/// A kind of picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PictureKind {
+    /// A PNG per frame.
+    Frames,
+    /// A PNG of some frames side by side.
+    Sheet,
+    /// An animated GIF.
+    Gif,
+}
+
+/// What colours mean.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ColorBy {
+    /// The fragment.
+    Fragment,
+    /// The largest principal stress.
+    Stress,
+    /// The speed.
+    Speed,
+}
+
+/// Light or dark.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ThemeName {
+    /// For white pages.
+    Light,
+    /// For dark pages.
+    Dark,
+}
+
 /// Arguments of `verify`.
 #[derive(Debug, Args)]
 pub(crate) struct VerifyArguments {
@@ -324,6 +405,8 @@ enum NumberError {
     NotPositive,
     #[error("the cells must be 4 to 1024")]
     CellsOutOfRange,
+    #[error("the view can be turned by -80 to 80 degrees")]
+    TurnOutOfRange,
 }
 
 fn parse_length(word: &str) -> Result<f64, NumberError> {
@@ -334,6 +417,12 @@ fn parse_length(word: &str) -> Result<f64, NumberError> {
 fn parse_cells(word: &str) -> Result<f64, NumberError> {
     let value: f64 = word.parse().map_err(|_| NumberError::Unreadable)?;
     if (4.0..=1024.0).contains(&value) { Ok(value) } else { Err(NumberError::CellsOutOfRange) }
+}
+
+/// Beyond these, all that is drawn would be a line or the back.
+fn parse_turn(word: &str) -> Result<f64, NumberError> {
+    let value: f64 = word.parse().map_err(|_| NumberError::Unreadable)?;
+    if (-80.0..=80.0).contains(&value) { Ok(value) } else { Err(NumberError::TurnOutOfRange) }
 }
 
 #[cfg(test)]

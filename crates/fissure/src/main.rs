@@ -16,7 +16,9 @@ mod man;
 mod meshes;
 mod moved;
 mod new;
+mod pictures;
 mod post;
+mod preview;
 mod progress;
 mod report;
 mod run;
@@ -24,6 +26,7 @@ mod scene_file;
 mod schema;
 mod sim;
 mod solve;
+mod take_path;
 mod threads;
 mod verify;
 mod workers;
@@ -63,6 +66,7 @@ fn execute(command: &Command, interrupt: &Interrupt, report: &Report) -> Result<
         Command::Run(arguments) => run::run(arguments, interrupt, report),
         Command::Sim(arguments) => sim::sim(arguments, interrupt, report),
         Command::Post(arguments) => post::post(arguments, interrupt, report),
+        Command::Preview(arguments) => preview::preview(arguments, interrupt, report),
         Command::Verify(arguments) => verify::verify(arguments, report),
         Command::Chart(arguments) => chart::chart(arguments, report),
         Command::Schema => schema::schema(),

@@ -160,22 +160,50 @@ impl Moment {
     }
 }
 
-/// Progress of writing meshes from a take.
+/// What is made of frames.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Made {
+    /// Meshes.
+    Meshes,
+    /// Pictures.
+    Pictures,
+}
+
+impl Made {
+    /// What one is called where programs listen.
+    fn event(self) -> &'static str {
+        match self {
+            Self::Meshes => "mesh",
+            Self::Pictures => "picture",
+        }
+    }
+
+    /// What they are called where people do.
+    fn plural(self) -> &'static str {
+        match self {
+            Self::Meshes => "meshes",
+            Self::Pictures => "pictures",
+        }
+    }
+}
+
+/// Progress of making something of each frame of a take.
 #[derive(Debug)]
-pub(crate) struct MeshProgress<'a> {
+pub(crate) struct TakeProgress<'a> {
     report: &'a Report,
+    made: Made,
     bar: Option<ProgressBar>,
     spoken: Instant,
     done: usize,
     total: usize,
 }
 
-impl<'a> MeshProgress<'a> {
+impl<'a> TakeProgress<'a> {
     /// Progress of `total` frames.
-    pub(crate) fn new(report: &'a Report, total: usize) -> Self {
+    pub(crate) fn new(report: &'a Report, made: Made, total: usize) -> Self {
         let bar = report.draws_bars().then(|| bar(total as u64, "{bar:30} {pos}/{len} frames  {eta} left"));
         report.set_bar(bar.clone());
-        Self { report, bar, spoken: Instant::now(), done: 0, total }
+        Self { report, made, bar, spoken: Instant::now(), done: 0, total }
     }
 
     /// One more frame is written.
@@ -185,16 +213,16 @@ impl<'a> MeshProgress<'a> {
             bar.inc(1);
         } else if self.report.is_json() {
             self.report.line(&serde_json::json!({
-                "event": "mesh", "frame": frame, "done": self.done, "total": self.total
+                "event": self.made.event(), "frame": frame, "done": self.done, "total": self.total
             }));
         } else if !self.report.is_quiet() && (self.spoken.elapsed() >= LINE_INTERVAL || self.done == self.total) {
             self.spoken = Instant::now();
-            self.report.write(&format!("meshes {}/{}  frame {frame}", self.done, self.total));
+            self.report.write(&format!("{} {}/{}  frame {frame}", self.made.plural(), self.done, self.total));
         }
     }
 }
 
-impl Drop for MeshProgress<'_> {
+impl Drop for TakeProgress<'_> {
     fn drop(&mut self) {
         self.report.set_bar(None);
         if let Some(bar) = &self.bar {

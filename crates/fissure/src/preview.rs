@@ -1,0 +1,87 @@
+//! `fissure preview`
+
+use crate::args::{ColorBy, PictureKind, PreviewArguments, ThemeName};
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::interrupt::Interrupt;
+use crate::invocation;
+use crate::pictures::Pictures;
+use crate::progress::{Made, TakeProgress};
+use crate::report::Report;
+use crate::workers::{Work, stream};
+use crate::{take_path, threads};
+use fissure_files::{Folder, Lock};
+use fissure_preview::{Coloring, PreviewOptions, Survey, Theme, View};
+use fissure_scene::Take;
+use std::sync::{Mutex, PoisonError};
+
+/// Folder of the pictures, in that of the take.
+const FOLDER: &str = "preview";
+
+/// Draws pictures of a take.
+pub(crate) fn preview(arguments: &PreviewArguments, interrupt: &Interrupt, report: &Report) -> Result<Exit, Failure> {
+    let threads = threads::set(arguments.threads)?;
+    let path = take_path::take_in(&arguments.run)?;
+    let take = Take::open(&path)?;
+    let numbers = take_path::chosen_frames(&take, &path, arguments.frames.as_ref())?;
+    take.remarks()?.iter().for_each(|remark| report.warn(&remark.to_string()));
+    let options = options(arguments);
+    let mut survey = Survey::new(options.coloring);
+    for &number in &numbers {
+        survey.add(&take.frame(number)?);
+    }
+    let folder = arguments.output.clone().unwrap_or_else(|| take_path::folder_of(&path).join(FOLDER));
+    let folder = Folder::new(folder);
+    folder.make()?;
+    let _lock = Lock::take(folder.path(), &invocation::typed())?;
+    folder.remove_drafts()?;
+    let pictures = Pictures::new(take.scene(), &folder, &arguments.pictures, &numbers, &survey, options, report);
+    pictures.replace_nothing_foreign(&numbers)?;
+    let progress = Mutex::new(TakeProgress::new(report, Made::Pictures, numbers.len()));
+    let work = |work: Work| {
+        let Work::InTake(number) = work else { return };
+        // Each frame not begun when the user asks to stop stays undone.
+        if !interrupt.is_set() {
+            pictures.make(number, || Ok(take.frame(number)?));
+            progress.lock().unwrap_or_else(PoisonError::into_inner).frame(number);
+        }
+    };
+    interrupt.finish_cleanly();
+    stream(threads, numbers.iter().copied(), &work, |_| ())?;
+    drop(progress);
+    if interrupt.is_set() {
+        report.note("interrupted; run the same command again");
+        return Ok(Exit::Interrupted);
+    }
+    let written = pictures.finish()?;
+    report.note(&format!("wrote {written} into `{}`", folder.path().display()));
+    Ok(Exit::Done)
+}
+
+/// What was typed, as the crate that draws says it.
+fn options(arguments: &PreviewArguments) -> PreviewOptions {
+    PreviewOptions {
+        width: arguments.size,
+        coloring: match arguments.color {
+            ColorBy::Fragment => Coloring::Fragment,
+            ColorBy::Stress => Coloring::Stress,
+            ColorBy::Speed => Coloring::Speed,
+        },
+        theme: match arguments.theme {
+            ThemeName::Light => Theme::Light,
+            ThemeName::Dark => Theme::Dark,
+        },
+        view: View { yaw: arguments.yaw.to_radians(), pitch: arguments.pitch.to_radians() },
+    }
+}
+
+impl PictureKind {
+    /// What is said of it at the end.
+    pub(crate) fn told(self, frames: usize) -> String {
+        match self {
+            Self::Frames => format!("{frames} pictures"),
+            Self::Sheet => "a contact sheet".to_owned(),
+            Self::Gif => "an animation".to_owned(),
+        }
+    }
+}
