@@ -6,9 +6,28 @@ use crate::failure::Failure;
 use crate::report::Report;
 use crate::workers::contain;
 use fissure_files::Folder;
-use fissure_post::{Manifest, PostError, PostOptions, Provenance, WriteError, post_frame, write_frame};
+use fissure_post::{
+    Manifest, PostError, PostOptions, Provenance, WriteError, post_frame, write_companions, write_frame,
+};
 use fissure_scene::{Format, Frame, Scene};
 use std::sync::{Mutex, PoisonError};
+
+/// That each format shows something of the parts, in what is meant to be written.
+///
+/// # Errors
+/// Names the format that does not.
+pub(crate) fn must_show(scene: &Scene, typed: &MeshArguments) -> Result<(), Failure> {
+    let parts = if typed.parts.is_empty() { &scene.output.parts } else { &typed.parts };
+    let is_empty = |format: &&Format| !parts.iter().any(|&part| format.shows(part));
+    let Some(format) = formats(scene, typed).iter().find(is_empty) else { return Ok(()) };
+    let message = format!("the format `{}` shows none of the parts that are asked for", format.name());
+    Err(Failure::new(Exit::Usage, message, "add the part `cracked`, or leave the format out"))
+}
+
+/// The formats as typed, or else as in the scene.
+fn formats<'a>(scene: &'a Scene, typed: &'a MeshArguments) -> &'a [Format] {
+    if typed.formats.is_empty() { &scene.output.formats } else { &typed.formats }
+}
 
 /// Makes the meshes of frames; shared by all workers.
 #[derive(Debug)]
@@ -51,18 +70,18 @@ impl<'a> Mesher<'a> {
         if !typed.parts.is_empty() {
             options.parts.clone_from(&typed.parts);
         }
-        let formats = if typed.formats.is_empty() { &scene.output.formats } else { &typed.formats };
         let manifest = Manifest::read(folder, &scene.name, &scene.hash)?;
         let outcome = Mutex::new(Outcome { manifest, ..Outcome::default() });
-        Ok(Self { scene, folder: folder.clone(), options, formats: formats.clone(), report, outcome })
+        Ok(Self { scene, folder: folder.clone(), options, formats: formats(scene, typed).to_vec(), report, outcome })
     }
 
     /// Makes and writes the meshes of the frame that `get` gives. A failure is reported at once and remembered; the
     /// other frames go on.
     pub(crate) fn make(&self, number: i64, get: impl FnOnce() -> Result<Frame, Failure>) {
         let made = contain(|| {
-            let meshes = post_frame(self.scene, &get()?, &self.options)?;
-            let records = write_frame(&self.folder, &self.scene.name, &meshes, &self.formats)?;
+            let frame = get()?;
+            let meshes = post_frame(self.scene, &frame, &self.options)?;
+            let records = write_frame(&self.folder, self.scene, &frame, &meshes, &self.formats)?;
             Ok((records, meshes.provenance))
         });
         let mut outcome = self.outcome.lock().unwrap_or_else(PoisonError::into_inner);
@@ -84,8 +103,9 @@ impl<'a> Mesher<'a> {
     /// # Errors
     /// When frames failed, or the list cannot be written.
     pub(crate) fn finish(self) -> Result<(), Failure> {
-        let outcome = self.outcome.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let mut outcome = self.outcome.into_inner().unwrap_or_else(PoisonError::into_inner);
         if let Some(provenance) = &outcome.provenance {
+            write_companions(&self.folder, self.scene, &provenance.tool, &mut outcome.manifest)?;
             outcome.manifest.write(&self.folder, provenance)?;
         }
         let Some(exit) = outcome.worst else { return Ok(()) };

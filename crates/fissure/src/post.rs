@@ -5,7 +5,7 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::invocation;
-use crate::meshes::Mesher;
+use crate::meshes::{Mesher, must_show};
 use crate::progress::{Made, TakeProgress};
 use crate::report::Report;
 use crate::workers::{Work, stream};
@@ -19,6 +19,7 @@ pub(crate) fn post(arguments: &PostArguments, interrupt: &Interrupt, report: &Re
     let threads = threads::set(arguments.threads)?;
     let path = take_path::take_in(&arguments.take)?;
     let take = Take::open(&path)?;
+    must_show(take.scene(), &arguments.mesh)?;
     let numbers = take_path::chosen_frames(&take, &path, arguments.frames.as_ref())?;
     take.remarks()?.iter().for_each(|remark| report.warn(&remark.to_string()));
     let folder = match &arguments.output {

@@ -6,7 +6,7 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::folder::OutputFolder;
 use crate::interrupt::Interrupt;
-use crate::meshes::Mesher;
+use crate::meshes::{Mesher, must_show};
 use crate::report::Report;
 use crate::solve::{self, Outcome};
 use crate::workers::{Work, stream};
@@ -23,6 +23,7 @@ pub(crate) fn run(arguments: &RunArguments, interrupt: &Interrupt, report: &Repo
     let scene = file.scene();
     let folder = OutputFolder::of(scene, &arguments.take);
     // Told before anything is computed.
+    must_show(scene, &arguments.mesh)?;
     Manifest::read(&folder.root, &scene.name, &scene.hash)?;
     let wanted = |number: i64| arguments.frames.as_ref().is_none_or(|frames| frames.contains(number));
     let solve = solve::open(scene, &folder, &arguments.take, arguments.frames.as_ref(), report)

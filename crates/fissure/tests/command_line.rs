@@ -198,7 +198,7 @@ fn shells_read_their_completions() {
     // What bash offers after a word, asked as bash asks.
     let ask = "source ./bash; COMP_WORDS=(fissure run --formats ''); COMP_CWORD=3; _fissure fissure '' --formats; echo ${COMPREPLY[*]}";
     let output = Command::new("bash").args(["-c", ask]).current_dir(folder.path()).output().unwrap();
-    assert_eq!(String::from_utf8_lossy(&output.stdout).trim(), "glb ply", "{output:?}");
+    assert_eq!(String::from_utf8_lossy(&output.stdout).trim(), "glb ply obj usda vtk svg", "{output:?}");
     assert!(expect(&run(folder.path(), &["completions", "cmd"]), 2).contains("powershell"));
 }
 
@@ -679,8 +679,20 @@ const TABLE: &[Bad] = &[
     },
     Bad {
         what: "unknown format",
-        arguments: &["run", "plate.toml", "--formats", "obj"],
-        says: &["obj", "glb"],
+        arguments: &["run", "plate.toml", "--formats", "fbx"],
+        says: &["fbx", "glb"],
+        ..FINE
+    },
+    Bad {
+        what: "a format that shows none of the parts",
+        arguments: &["run", "plate.toml", "--formats", "svg", "--parts", "particles"],
+        says: &["svg", "cracked"],
+        ..FINE
+    },
+    Bad {
+        what: "a format in the scene that shows none of its parts",
+        arguments: &["check", "plate.toml", "--set", "output.formats=[\"svg\"]", "--set", "output.parts=[\"faces\"]"],
+        says: &["svg", "cracked", "output.formats"],
         ..FINE
     },
     Bad {

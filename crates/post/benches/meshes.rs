@@ -19,8 +19,8 @@ mod common;
 use common::{Opened, frame, options, scene, square};
 use criterion::Criterion;
 use fissure_post::bench::twice_enclosed;
-use fissure_post::{Provenance, post_frame, to_glb, to_ply};
-use fissure_scene::{CrackEnd, Point, UpAxis};
+use fissure_post::{encode, post_frame};
+use fissure_scene::{CrackEnd, Format, Point};
 use geo::{Area, BooleanOps, Coord, LineString, Polygon};
 use std::time::Duration;
 
@@ -118,11 +118,11 @@ fn solids(criterion: &mut Criterion) {
     group.bench_function("crack of 1000 points", |b| b.iter(|| make().parts.len()));
     group.finish();
     let made = make();
-    let meshes = &made.parts[0].1;
-    let provenance: &Provenance = &made.provenance;
+    let shot = made.shots(&scene, &frame).next().unwrap();
     let mut group = criterion.benchmark_group("export");
-    group.bench_function("glb", |b| b.iter(|| to_glb(meshes, provenance).unwrap().len()));
-    group.bench_function("ply", |b| b.iter(|| to_ply(meshes, provenance, UpAxis::Z).unwrap().len()));
+    for format in Format::ALL {
+        group.bench_function(format.name(), |b| b.iter(|| encode(format, &shot).unwrap().len()));
+    }
     group.finish();
 }
 

@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut options = options(&scene);
         options.parts = vec![Part::Cracked, Part::Body, Part::Faces, Part::Collider, Part::Particles];
         let meshes = post_frame(&scene, &frame, &options)?;
-        manifest.add(write_frame(&folder, "sample", &meshes, &[Format::Glb, Format::Ply])?);
+        manifest.add(write_frame(&folder, &scene, &frame, &meshes, &[Format::Glb, Format::Ply])?);
         provenance = Some(meshes.provenance);
     }
     if let Some(provenance) = provenance {

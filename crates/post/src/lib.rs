@@ -58,7 +58,7 @@ mod write;
 mod write_error;
 
 pub use error::PostError;
-pub use formats::{FormatError, to_glb, to_ply};
+pub use formats::{FormatError, Shot, encode};
 #[cfg(feature = "files")]
 pub use manifest::Manifest;
 pub use mesh::{Content, Mesh, MeshDefect, Vertex};
@@ -66,9 +66,9 @@ pub use options::PostOptions;
 pub use post::{FrameMeshes, post_frame};
 pub use provenance::Provenance;
 #[cfg(feature = "files")]
-pub use record::{FileRecord, file_name};
+pub use record::{FileRecord, ObjectRecord, SequenceRecord, file_name};
 pub use slot::Slot;
 #[cfg(feature = "files")]
-pub use write::write_frame;
+pub use write::{write_companions, write_frame};
 #[cfg(feature = "files")]
 pub use write_error::WriteError;

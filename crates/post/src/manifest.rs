@@ -1,10 +1,11 @@
 //! The list of written files.
 
-use crate::formats::{TOOL, is_ours};
+use crate::formats::{TOOL, is_ours, sequence_name};
 use crate::provenance::Provenance;
-use crate::record::{FileRecord, file_name};
+use crate::record::{FileRecord, SequenceRecord, file_name};
 use crate::write_error::WriteError;
 use fissure_files::Folder;
+use fissure_scene::{Format, Part};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -16,6 +17,8 @@ const NAME: &str = "manifest.json";
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Manifest {
     records: BTreeMap<(i64, String), FileRecord>,
+    /// By file name.
+    sequences: BTreeMap<String, SequenceRecord>,
 }
 
 /// The manifest as it is written.
@@ -25,6 +28,8 @@ struct Document<'a> {
     scene: &'a str,
     scene_hash: &'a str,
     files: Vec<&'a FileRecord>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    sequences: Vec<&'a SequenceRecord>,
 }
 
 /// The manifest as it is read.
@@ -34,6 +39,8 @@ struct OldDocument {
     scene: String,
     scene_hash: String,
     files: Vec<FileRecord>,
+    #[serde(default)]
+    sequences: Vec<SequenceRecord>,
 }
 
 impl Manifest {
@@ -55,6 +62,11 @@ impl Manifest {
                 manifest.add([record]);
             }
         }
+        for record in old.sequences {
+            if folder.place(&record.file).is_ok() && folder.length(&record.file)?.is_some() {
+                manifest.add_sequence(record);
+            }
+        }
         Ok(manifest)
     }
 
@@ -71,7 +83,32 @@ impl Manifest {
                 folder.remove(&name)?;
             }
         }
+        for record in old.sequences {
+            let name = sequence_name(scene, record.part);
+            let is_named_so = record.file.strip_prefix(&name).is_some_and(|rest| rest.starts_with('.'));
+            let is_plain = folder.place(&record.file).is_ok();
+            let is_there = || folder.read(&record.file);
+            if is_named_so && is_plain && is_there()?.is_some_and(|there| is_ours(record.format, &there)) {
+                folder.remove(&record.file)?;
+            }
+        }
         Ok(folder.remove(NAME)?)
+    }
+
+    /// Adds a file about the whole sequence; one of the same name replaces the earlier.
+    pub(crate) fn add_sequence(&mut self, record: SequenceRecord) {
+        self.sequences.insert(record.file.clone(), record);
+    }
+
+    /// Parts and formats of all files, each pair once.
+    pub(crate) fn kinds(&self) -> Vec<(Part, Format)> {
+        let mut kinds = Vec::new();
+        for record in self.records.values() {
+            if !kinds.contains(&(record.part, record.format)) {
+                kinds.push((record.part, record.format));
+            }
+        }
+        kinds
     }
 
     /// Adds records; one of the same frame and file name replaces the earlier.
@@ -95,9 +132,10 @@ impl Manifest {
             scene: &provenance.scene,
             scene_hash: &provenance.scene_hash,
             files: self.records().collect(),
+            sequences: self.sequences.values().collect(),
         };
         let text = serde_json::to_string(&document)?;
-        // Records hold no nested objects, so each of these is the border between two of them.
+        // What records hold does not begin so: each of these is the border between two of them.
         let lines = text.replace("{\"file\":", "\n{\"file\":");
         folder.write(NAME, format!("{lines}\n").as_bytes())?;
         folder.sync()?;

@@ -12,9 +12,19 @@ pub(crate) struct PackedVertex {
     pub(crate) velocity: [f32; 3],
 }
 
-/// Rounds a vertex and turns it so that `up` points up; a turn by a right angle, exact.
-pub(crate) fn pack(vertex: &Vertex, up: UpAxis) -> PackedVertex {
-    let turn = |[x, y, z]: [f64; 3]| match up {
+/// How positions and velocities are written.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Convention {
+    /// The axis that points up.
+    pub(crate) up: UpAxis,
+    /// Seconds of simulated time in one second that velocities are written for: 1, or
+    /// [`fissure_scene::FrameSettings::time_scale`] for velocities per second of playback.
+    pub(crate) time_scale: f64,
+}
+
+/// Rounds a vertex and turns it so that the axis up points up; a turn by a right angle, exact.
+pub(crate) fn pack(vertex: &Vertex, convention: Convention) -> PackedVertex {
+    let turn = |[x, y, z]: [f64; 3]| match convention.up {
         UpAxis::Y => [x as f32, y as f32, z as f32],
         // The viewer, who stood on +z, stands on −y: the front view of programs with z up.
         UpAxis::Z => [x as f32, -z as f32, y as f32],
@@ -23,19 +33,23 @@ pub(crate) fn pack(vertex: &Vertex, up: UpAxis) -> PackedVertex {
         position: turn(vertex.position),
         normal: turn(vertex.normal),
         texture: vertex.texture.map(|x| x as f32),
-        velocity: turn(vertex.velocity),
+        velocity: turn(vertex.velocity.map(|v| v * convention.time_scale)),
     }
 }
 
 /// The vertices that `triangles` use, in the order of first use, and the triangles in terms of them.
-pub(crate) fn compact(mesh: &Mesh, triangles: &[[u32; 3]], up: UpAxis) -> (Vec<PackedVertex>, Vec<[u32; 3]>) {
+pub(crate) fn compact(
+    mesh: &Mesh,
+    triangles: &[[u32; 3]],
+    convention: Convention,
+) -> (Vec<PackedVertex>, Vec<[u32; 3]>) {
     let mut new_index = vec![u32::MAX; mesh.vertices.len()];
     let mut vertices = Vec::new();
     let mut renumbered = |old: u32| {
         let new = &mut new_index[old as usize];
         if *new == u32::MAX {
             *new = vertices.len() as u32;
-            vertices.push(pack(&mesh.vertices[old as usize], up));
+            vertices.push(pack(&mesh.vertices[old as usize], convention));
         }
         *new
     };

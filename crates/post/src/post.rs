@@ -4,6 +4,7 @@ use crate::colliders::collider_meshes;
 use crate::cracked::{cracked_meshes, whole_meshes};
 use crate::error::PostError;
 use crate::faces::face_meshes;
+use crate::formats::Shot;
 use crate::mesh::Mesh;
 use crate::options::PostOptions;
 use crate::particles::particle_meshes;
@@ -19,6 +20,21 @@ pub struct FrameMeshes {
     pub up: UpAxis,
     /// Meshes of each part that was asked for, in that order.
     pub parts: Vec<(Part, Vec<Mesh>)>,
+}
+
+impl FrameMeshes {
+    /// Each part as it is written; `scene` and `frame` are what these meshes were made of.
+    pub fn shots<'a>(&'a self, scene: &'a Scene, frame: &'a Frame) -> impl Iterator<Item = Shot<'a>> {
+        let shot = move |(part, objects): &'a (Part, Vec<Mesh>)| Shot {
+            part: *part,
+            objects,
+            provenance: &self.provenance,
+            up: self.up,
+            scene,
+            frame,
+        };
+        self.parts.iter().map(shot)
+    }
 }
 
 /// Makes the meshes of one frame, and checks that each solid is one. Deterministic; frames may be processed in any

@@ -1,6 +1,6 @@
 //! What is said of a mesh file: its name, and its line in the list.
 
-use crate::formats::file_format;
+use crate::formats::{file_format, sequence_name};
 use fissure_scene::{Format, Part};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -33,17 +33,41 @@ pub struct FileRecord {
     pub thickness: f64,
     /// Volume of all solids as the file holds them [m³].
     pub volume: f64,
+    /// The objects, in the order of the file.
+    #[serde(default)]
+    pub objects: Vec<ObjectRecord>,
+}
+
+/// One object of a file.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ObjectRecord {
+    /// Its name.
+    pub name: String,
+    /// Fragment number of the simulation, or index of the crack or collider.
+    pub piece: u32,
+    /// Names of the materials of its triangles; none for points.
+    pub materials: Vec<String>,
+}
+
+/// One written file that is about the whole sequence of a part.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SequenceRecord {
+    /// Name of the file within its folder.
+    pub file: String,
+    /// What it shows.
+    pub part: Part,
+    /// Its format.
+    pub format: Format,
+    /// Number of the first frame in it.
+    pub first: i64,
+    /// Number of the last frame in it.
+    pub last: i64,
+    /// How many frames are in it.
+    pub frames: usize,
 }
 
 /// Name of the file of one part, frame and format.
 pub fn file_name(prefix: &str, part: Part, frame: i64, format: Format) -> String {
-    let suffix = match part {
-        Part::Cracked => "",
-        Part::Body => "_body",
-        Part::Faces => "_faces",
-        Part::Collider => "_collider",
-        Part::Particles => "_particles",
-    };
     let extension = file_format(format).extension(part);
-    format!("{prefix}{suffix}.{frame:04}.{extension}")
+    format!("{}.{frame:04}.{extension}", sequence_name(prefix, part))
 }

@@ -1,54 +1,76 @@
 //! Mesh files of a sequence.
 
-use crate::formats::{Shot, file_format, is_ours};
+use crate::formats::{Listing, Shot, encode, file_format, is_ours, sequence_name};
+use crate::manifest::Manifest;
 use crate::mesh::{Content, Mesh};
 use crate::post::FrameMeshes;
-use crate::record::{FileRecord, file_name};
+use crate::record::{FileRecord, ObjectRecord, SequenceRecord, file_name};
+use crate::slot::Slot;
 use crate::write_error::WriteError;
 use fissure_files::Folder;
-use fissure_scene::{Format, Part};
+use fissure_scene::{Format, Frame, Scene};
 use std::path::PathBuf;
 
-/// Writes the meshes of one frame into `folder`, which must exist, one file per part and format:
-/// `prefix.0001.glb` for the cracked body, `prefix_particles.0001.glb` and so on for other parts, so that each part is
-/// a sequence of its own. A part with nothing in it gives a valid file with nothing in it: no sequence has gaps.
+/// Writes the meshes of `frame` into `folder`, which must exist, one file per part and format that shows it:
+/// `pull.0001.glb` for the cracked body of the scene `pull`, `pull_particles.0001.glb` and so on for other parts, so
+/// that each part is a sequence of its own. A part with nothing in it gives a valid file with nothing in it: no
+/// sequence has gaps.
 /// Each file is there whole or not at all; one that Fissure has not made is never replaced.
 ///
 /// # Errors
 /// At the first file that cannot be written.
 pub fn write_frame(
     folder: &Folder,
-    prefix: &str,
+    scene: &Scene,
+    frame: &Frame,
     meshes: &FrameMeshes,
     formats: &[Format],
 ) -> Result<Vec<FileRecord>, WriteError> {
     let mut records = Vec::with_capacity(formats.len() * meshes.parts.len());
-    for (part, objects) in &meshes.parts {
-        let shot = Shot { objects, provenance: &meshes.provenance, up: meshes.up };
-        for &format in formats {
-            let file = file_name(prefix, *part, meshes.provenance.frame, format);
+    for shot in meshes.shots(scene, frame) {
+        for &format in formats.iter().filter(|format| format.shows(shot.part)) {
+            let file = file_name(&scene.name, shot.part, meshes.provenance.frame, format);
             let path = folder.place(&file)?;
-            let bytes =
-                file_format(format).frame(&shot).map_err(|cause| WriteError::Format { file: file.clone(), cause })?;
-            if folder.read(&file)?.is_some_and(|there| !is_ours(format, &there)) {
-                return Err(WriteError::Foreign { path });
-            }
-            // The take is what outlives a power cut; meshes are made of it again.
-            folder.write_unsynced(&file, &bytes)?;
-            records.push(record(file, path, *part, format, meshes, objects));
+            let bytes = encode(format, &shot).map_err(|cause| WriteError::Format { file: file.clone(), cause })?;
+            write(folder, &file, format, &bytes)?;
+            records.push(record(file, path, format, &shot));
         }
     }
     Ok(records)
 }
 
-fn record(
-    file: String,
-    path: PathBuf,
-    part: Part,
-    format: Format,
-    meshes: &FrameMeshes,
-    objects: &[Mesh],
-) -> FileRecord {
+/// Writes the files that go with those of the frames: of each part and format those that all frames refer to, or that
+/// play them. They are about all frames that `manifest` lists, and join the list.
+///
+/// # Errors
+/// At the first file that cannot be written.
+pub fn write_companions(folder: &Folder, scene: &Scene, tool: &str, manifest: &mut Manifest) -> Result<(), WriteError> {
+    for (part, format) in manifest.kinds() {
+        let records: Vec<&FileRecord> =
+            manifest.records().filter(|record| (record.part, record.format) == (part, format)).collect();
+        let (Some(first), Some(last)) = (records.first(), records.last()) else { continue };
+        let (first, last, frames) = (first.frame, last.frame, records.len());
+        let name = sequence_name(&scene.name, part);
+        let files = file_format(format).companions(&Listing { scene, tool, name: &name, records: &records });
+        for (file, bytes) in files {
+            write(folder, &file, format, &bytes)?;
+            manifest.add_sequence(SequenceRecord { file, part, format, first, last, frames });
+        }
+    }
+    Ok(())
+}
+
+/// Writes a file, unless there is one that is not ours.
+fn write(folder: &Folder, file: &str, format: Format, bytes: &[u8]) -> Result<(), WriteError> {
+    if folder.read(file)?.is_some_and(|there| !is_ours(format, &there)) {
+        return Err(WriteError::Foreign { path: folder.place(file)? });
+    }
+    // The take is what outlives a power cut; meshes are made of it again.
+    Ok(folder.write_unsynced(file, bytes)?)
+}
+
+fn record(file: String, path: PathBuf, format: Format, shot: &Shot<'_>) -> FileRecord {
+    let objects = shot.objects;
     let solids = || {
         objects.iter().filter_map(|m| {
             if let Content::Solid { area, thickness } = m.content { Some((area, thickness, m)) } else { None }
@@ -57,15 +79,22 @@ fn record(
     FileRecord {
         file,
         path,
-        part,
+        part: shot.part,
         format,
-        frame: meshes.provenance.frame,
-        time: meshes.provenance.time,
+        frame: shot.provenance.frame,
+        time: shot.provenance.time,
         pieces: objects.len(),
         vertices: objects.iter().map(|m| m.vertices.len()).sum(),
         triangles: objects.iter().map(Mesh::triangle_count).sum(),
         area: solids().map(|(area, _, _)| area).sum(),
         thickness: solids().next().map_or(0.0, |(_, thickness, _)| thickness),
         volume: solids().map(|(_, _, mesh)| mesh.volume()).sum(),
+        objects: objects.iter().map(object_record).collect(),
     }
+}
+
+fn object_record(mesh: &Mesh) -> ObjectRecord {
+    let used = Slot::ALL.into_iter().filter(|slot| !mesh.slot(*slot).is_empty());
+    let materials = used.map(|slot| slot.name().to_owned()).collect();
+    ObjectRecord { name: mesh.name.clone(), piece: mesh.piece, materials }
 }

@@ -5,25 +5,42 @@ mod common;
 
 use common::{halves, options};
 use fissure_files::Folder;
-use fissure_post::{FrameMeshes, Manifest, WriteError, post_frame, write_frame};
-use fissure_scene::{Format, Part, UpAxis, Vector};
+use fissure_post::{FileRecord, FrameMeshes, Manifest, WriteError, post_frame, write_companions, write_frame};
+use fissure_scene::{Format, Frame, Part, Scene, UpAxis, Vector};
 use ply_rs_bw::parser::Parser;
 use ply_rs_bw::ply::{DefaultElement, Property};
 use std::collections::BTreeSet;
 
-fn sample(number: i64) -> FrameMeshes {
-    let (scene, mut frame) = halves(20.0, [(0.0, Vector::zeros()), (0.3, Vector::new(3.0, 0.5))]);
+/// A frame with its meshes, and the scene that it is of.
+struct Sample {
+    scene: Scene,
+    frame: Frame,
+    meshes: FrameMeshes,
+}
+
+impl Sample {
+    fn write(&self, folder: &Folder, formats: &[Format]) -> Result<Vec<FileRecord>, WriteError> {
+        write_frame(folder, &self.scene, &self.frame, &self.meshes, formats)
+    }
+}
+
+fn sample(number: i64) -> Sample {
+    let (mut scene, mut frame) = halves(20.0, [(0.0, Vector::zeros()), (0.3, Vector::new(3.0, 0.5))]);
     frame.number = number;
     let mut options = options(&scene);
     options.parts = vec![Part::Cracked, Part::Particles, Part::Collider];
-    post_frame(&scene, &frame, &options).unwrap()
+    scene.name = "glass".into();
+    // Shown at half the speed.
+    scene.frames.rate = 2.0 * scene.frames.playback;
+    let meshes = post_frame(&scene, &frame, &options).unwrap();
+    Sample { scene, frame, meshes }
 }
 
 #[test]
 fn a_glb_file_holds_what_the_mesh_holds() {
     let folder = tempfile::tempdir().unwrap();
     let sample = sample(1);
-    let records = write_frame(&Folder::new(folder.path()), "glass", &sample, &[Format::Glb]).unwrap();
+    let records = sample.write(&Folder::new(folder.path()), &[Format::Glb]).unwrap();
     let names: Vec<&str> = records.iter().map(|r| r.file.as_str()).collect();
     assert_eq!(names, ["glass.0001.glb", "glass_particles.0001.glb", "glass_collider.0001.glb"]);
 
@@ -31,7 +48,7 @@ fn a_glb_file_holds_what_the_mesh_holds() {
         serde_json::from_str(node.extras().as_ref().unwrap().get()).unwrap()
     };
     let (document, buffers, _) = gltf::import(&records[0].path).unwrap();
-    let meshes = &sample.parts[0].1;
+    let meshes = &sample.meshes.parts[0].1;
     assert_eq!(document.nodes().count(), meshes.len());
     for (node, mesh) in document.nodes().zip(meshes) {
         assert_eq!(node.name(), Some(mesh.name.as_str()));
@@ -77,8 +94,8 @@ fn a_glb_file_holds_what_the_mesh_holds() {
 fn a_ply_file_holds_what_the_mesh_holds() {
     let folder = tempfile::tempdir().unwrap();
     let sample = sample(1);
-    assert_eq!(sample.up, UpAxis::Z);
-    let records = write_frame(&Folder::new(folder.path()), "glass", &sample, &[Format::Ply]).unwrap();
+    assert_eq!(sample.meshes.up, UpAxis::Z);
+    let records = sample.write(&Folder::new(folder.path()), &[Format::Ply]).unwrap();
     let bytes = std::fs::read(&records[0].path).unwrap();
     let ply = Parser::<DefaultElement>::new().read_ply(&mut bytes.as_slice()).unwrap();
     let (vertices, faces) = (&ply.payload["vertex"], &ply.payload["face"]);
@@ -87,7 +104,7 @@ fn a_ply_file_holds_what_the_mesh_holds() {
         _ => panic!("{name} is not a float"),
     };
     let mut row = 0;
-    for mesh in &sample.parts[0].1 {
+    for mesh in &sample.meshes.parts[0].1 {
         for (slot, triangles) in [0.0, 1.0].into_iter().zip(&mesh.triangles) {
             for triangle in triangles {
                 let Property::ListInt(read) = &faces[row]["vertex_indices"] else { panic!("not a list") };
@@ -99,7 +116,7 @@ fn a_ply_file_holds_what_the_mesh_holds() {
                     let turned = |[x, y, z]: [f64; 3]| [x as f32, -z as f32, y as f32];
                     assert_eq!(three(["x", "y", "z"]), turned(made.position));
                     assert_eq!(three(["nx", "ny", "nz"]), turned(made.normal));
-                    assert_eq!(three(["vx", "vy", "vz"]), turned(made.velocity));
+                    assert_eq!(three(["vx", "vy", "vz"]), turned(made.velocity.map(|v| 0.5 * v)));
                     assert_eq!([float(vertex, "s"), float(vertex, "t")], made.texture.map(|x| x as f32));
                     assert_eq!([float(vertex, "piece"), float(vertex, "slot")], [mesh.piece as f32, slot]);
                 }
@@ -117,9 +134,9 @@ fn the_manifest_does_not_depend_on_the_order_of_the_frames() {
     let text = |order: [i64; 3]| {
         let mut manifest = Manifest::default();
         for number in order {
-            manifest.add(write_frame(&inside, "glass", &sample(number), &[Format::Glb, Format::Ply]).unwrap());
+            manifest.add(sample(number).write(&inside, &[Format::Glb, Format::Ply]).unwrap());
         }
-        std::fs::read_to_string(manifest.write(&inside, &sample(1).provenance).unwrap()).unwrap()
+        std::fs::read_to_string(manifest.write(&inside, &sample(1).meshes.provenance).unwrap()).unwrap()
     };
     let written = text([1, 2, 10]);
     assert_eq!(written, text([10, 1, 2]));
@@ -137,7 +154,7 @@ fn the_manifest_does_not_depend_on_the_order_of_the_frames() {
 #[test]
 fn a_folder_that_cannot_be_written_is_named() {
     let missing = tempfile::tempdir().unwrap().path().join("missing");
-    let error = write_frame(&Folder::new(&missing), "glass", &sample(1), &[Format::Glb]).unwrap_err();
+    let error = sample(1).write(&Folder::new(&missing), &[Format::Glb]).unwrap_err();
     let WriteError::File(told) = &error else { panic!("{error}") };
     assert_eq!(told.path, missing.join("glass.0001.glb"));
     assert!(error.to_string().contains("glass.0001.glb`: "), "{error}");
@@ -151,14 +168,14 @@ fn files_of_others_are_neither_replaced_nor_removed() {
     let sample = sample(1);
     let formats = [Format::Glb, Format::Ply];
     let mut manifest = Manifest::default();
-    manifest.add(write_frame(&inside, "glass", &sample, &formats).unwrap());
-    manifest.write(&inside, &sample.provenance).unwrap();
+    manifest.add(sample.write(&inside, &formats).unwrap());
+    manifest.write(&inside, &sample.meshes.provenance).unwrap();
     let listed = inside.read("manifest.json").unwrap().unwrap();
 
     // Ours are replaced, and so is what a power cut leaves of them.
     for left in [&[][..], &[0; 512]] {
         inside.write("glass.0001.ply", left).unwrap();
-        write_frame(&inside, "glass", &sample, &formats).unwrap();
+        sample.write(&inside, &formats).unwrap();
         assert!(inside.read("glass.0001.ply").unwrap().unwrap().starts_with(b"ply"));
     }
 
@@ -173,13 +190,13 @@ fn files_of_others_are_neither_replaced_nor_removed() {
     {
         let ours = inside.read(name).unwrap().unwrap();
         inside.write(name, &theirs).unwrap();
-        let error = write_frame(&inside, "glass", &sample, &formats).unwrap_err();
+        let error = sample.write(&inside, &formats).unwrap_err();
         assert!(matches!(&error, WriteError::Foreign { path } if path.ends_with(name)), "{error}");
         Manifest::remove_meshes(&inside, "glass").unwrap();
         assert_eq!(inside.read(name).unwrap().unwrap(), theirs);
         assert_eq!(inside.names().unwrap(), [name]);
         inside.write(name, &ours).unwrap();
-        write_frame(&inside, "glass", &sample, &formats).unwrap();
+        sample.write(&inside, &formats).unwrap();
         inside.write("manifest.json", &listed).unwrap();
     }
 
@@ -201,7 +218,46 @@ fn files_of_others_are_neither_replaced_nor_removed() {
     for theirs in ["{\"name\": \"a web page\"}", "{\"tool\": \"webpack\", \"files\": []}", "[]", "\0"] {
         meshes.write("manifest.json", theirs.as_bytes()).unwrap();
         assert!(Manifest::remove_meshes(&meshes, "glass").is_err() && Manifest::read(&meshes, "glass", "").is_err());
-        assert!(manifest.write(&meshes, &sample.provenance).is_err(), "{theirs}");
+        assert!(manifest.write(&meshes, &sample.meshes.provenance).is_err(), "{theirs}");
         assert_eq!(meshes.read("manifest.json").unwrap().unwrap(), theirs.as_bytes());
     }
+}
+
+/// All formats alike: a file of ours is replaced and removed, one of others is neither, and what goes with a sequence
+/// is there.
+#[test]
+fn every_format_knows_its_own_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let inside = Folder::new(folder.path());
+    let samples = [sample(1), sample(12)];
+    let write = || {
+        let mut manifest = Manifest::default();
+        for sample in &samples {
+            manifest.add(sample.write(&inside, &Format::ALL)?);
+        }
+        write_companions(&inside, &samples[0].scene, &samples[0].meshes.provenance.tool, &mut manifest)?;
+        manifest.write(&inside, &samples[0].meshes.provenance)
+    };
+    write().unwrap();
+    write().unwrap();
+    let names = inside.names().unwrap();
+    // Three parts in two frames; the SVG shows one of them.
+    let frames = |extension: &str| names.iter().filter(|name| name.ends_with(&format!("1.{extension}"))).count();
+    assert_eq!(["glb", "ply", "obj", "usda", "vtp", "vtu", "svg"].map(frames), [3, 3, 3, 3, 2, 1, 1]);
+    for name in ["glass.usda", "glass.clips.usda", "glass_particles.pvd", "glass.mtl", "glass_collider.usda"] {
+        assert!(names.iter().any(|n| n == name), "{name} among {names:?}");
+    }
+    for name in names.iter().filter(|name| *name != "manifest.json") {
+        let ours = inside.read(name).unwrap().unwrap();
+        // What another program would have written instead.
+        let theirs: Vec<u8> = String::from_utf8_lossy(&ours).replace("fissure ", "another ").into_bytes();
+        inside.write(name, &theirs).unwrap();
+        let error = write().unwrap_err();
+        assert!(matches!(&error, WriteError::Foreign { path } if path.ends_with(name)), "{name}: {error}");
+        inside.write(name, &ours).unwrap();
+    }
+    write().unwrap();
+    inside.write("glass.mtl", b"newmtl brick").unwrap();
+    Manifest::remove_meshes(&inside, "glass").unwrap();
+    assert_eq!(inside.names().unwrap(), ["glass.mtl"]);
 }

@@ -220,12 +220,27 @@ pub struct FrameSettings {
     pub last: i64,
     /// Frames per second of simulated time [1/s].
     pub rate: f64,
+    /// Frames per second at which the sequence is shown [1/s].
+    #[serde(default = "usual_playback")]
+    pub playback: f64,
+}
+
+/// Frames per second of a film.
+pub(crate) const PLAYBACK: f64 = 24.0;
+
+fn usual_playback() -> f64 {
+    PLAYBACK
 }
 
 impl FrameSettings {
     /// Time of the frame `number` [s].
     pub fn time(&self, number: i64) -> f64 {
         (number - self.first) as f64 / self.rate
+    }
+
+    /// Seconds of simulated time per second of playback: below 1 in slow motion.
+    pub fn time_scale(&self) -> f64 {
+        self.playback / self.rate
     }
 
     /// Number of frames.
@@ -260,6 +275,39 @@ pub enum Format {
     Glb,
     /// Binary PLY.
     Ply,
+    /// Wavefront OBJ with its materials.
+    Obj,
+    /// Universal Scene Description as text: a file per frame, and one that plays them all.
+    Usda,
+    /// VTK files for ParaView: surfaces, particles with their stress, and a list with the times.
+    Vtk,
+    /// The drawing plane as SVG, in mm: fragments, cracks and tips (part `cracked`).
+    Svg,
+}
+
+impl Format {
+    /// All of them.
+    pub const ALL: [Self; 6] = [Self::Glb, Self::Ply, Self::Obj, Self::Usda, Self::Vtk, Self::Svg];
+
+    /// Its name in scene files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Glb => "glb",
+            Self::Ply => "ply",
+            Self::Obj => "obj",
+            Self::Usda => "usda",
+            Self::Vtk => "vtk",
+            Self::Svg => "svg",
+        }
+    }
+
+    /// Whether files of this format show `part`.
+    pub fn shows(self, part: Part) -> bool {
+        match self {
+            Self::Glb | Self::Ply | Self::Obj | Self::Usda | Self::Vtk => true,
+            Self::Svg => part == Part::Cracked,
+        }
+    }
 }
 
 /// The axis that points up in formats that do not fix it.

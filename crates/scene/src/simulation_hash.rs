@@ -1,7 +1,7 @@
 //! What the frames of a scene depend on, as one number.
 
 use crate::scene::Scene;
-use crate::settings::OutputSettings;
+use crate::settings::{OutputSettings, PLAYBACK};
 use sha2::{Digest, Sha256};
 
 impl Scene {
@@ -21,6 +21,7 @@ impl Scene {
             guides.into_iter().flatten().for_each(|guide| guide.for_each_mut(&mut |guide| guide.name.clear()));
         }
         scene.frames.last = scene.frames.first;
+        scene.frames.playback = PLAYBACK;
         let OutputSettings { thickness, formats, parts, up, smallest_fragment, walls } = &mut scene.output;
         (*thickness, *smallest_fragment, *up, *walls) = (0.0, 0.0, Default::default(), Default::default());
         formats.clear();

@@ -62,7 +62,7 @@ pub(crate) fn free_body(region: Region, spacing: f64) -> Scene {
             speed_curve: Curve::default(),
             branching: None,
         },
-        frames: FrameSettings { first: 1, last: 2, rate: 24.0 },
+        frames: FrameSettings { first: 1, last: 2, rate: 24.0, playback: 24.0 },
         output: OutputSettings {
             thickness: 1.0,
             formats: Vec::new(),

@@ -82,7 +82,7 @@ impl Problem {
             cell_size,
             solver,
             growth: GrowthSettings { enabled: false, ..growth },
-            frames: FrameSettings { first: 0, last: 1, rate: 1.0 },
+            frames: FrameSettings { first: 0, last: 1, rate: 1.0, playback: 24.0 },
             output: OutputSettings {
                 thickness: 1.0,
                 formats: Vec::new(),
@@ -118,7 +118,8 @@ impl Problem {
 
     /// Runs until `time` [s] in `frames` frames; the solver looks at its stability limit after each.
     pub(crate) fn until(mut self, time: f64, frames: u32) -> Self {
-        self.scene.frames = FrameSettings { first: 0, last: i64::from(frames), rate: f64::from(frames) / time };
+        self.scene.frames =
+            FrameSettings { first: 0, last: i64::from(frames), rate: f64::from(frames) / time, playback: 24.0 };
         self
     }
 

@@ -182,8 +182,7 @@ pub(super) fn run(folder: &Path, input: &[u8]) -> Result<(), Refusal> {
             return Err(unsound("a frame comes back as another"));
         }
         let meshes = post_frame(&scene, &frame, &everything(&scene)).map_err(|e| e.to_string())?;
-        write_frame(&Folder::new(folder), "pipeline", &meshes, &[Format::Glb, Format::Ply])
-            .map_err(|e| e.to_string())?;
+        write_frame(&Folder::new(folder), &scene, &frame, &meshes, &Format::ALL).map_err(|e| e.to_string())?;
         let state = simulation.save().map_err(|e| e.to_string())?;
         let restored =
             Simulation::restore(&scene, &state).map_err(|e| unsound(&format!("a state of ours is refused: {e}")))?;

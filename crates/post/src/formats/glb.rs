@@ -1,8 +1,9 @@
 //! Binary glTF 2.0: y up, one node per mesh, one primitive per material slot.
 
+use super::palette::color_and_roughness;
 use super::{FileFormat, FormatError, Shot};
 use crate::mesh::{Content, Mesh};
-use crate::packed::{PackedVertex, compact, pack};
+use crate::packed::{Convention, PackedVertex, compact, pack};
 use crate::provenance::Provenance;
 use crate::slot::Slot;
 use fissure_scene::{Part, UpAxis};
@@ -20,7 +21,8 @@ use std::collections::BTreeMap;
 
 /// The bytes of a GLB file with `meshes`.
 ///
-/// Attributes: `POSITION`, `NORMAL`, `TEXCOORD_0` and `_VELOCITY` [m/s]; points have no normals and texture
+/// Attributes: `POSITION`, `NORMAL`, `TEXCOORD_0` and `_VELOCITY` [m per second of
+/// playback], of which `time_scale` seconds of simulated time pass in one; points have no normals and texture
 /// coordinates. What a whole object has in common, its `piece`, is in the extras of its node. Materials: `outside` and
 /// `inside`, those that are used. `asset.extras` says where the file comes from. No meshes give a scene with one node
 /// without a mesh.
@@ -30,8 +32,8 @@ use std::collections::BTreeMap;
 ///
 /// # Errors
 /// When the file would be larger than the 4 GiB of the format.
-pub fn to_glb(meshes: &[Mesh], provenance: &Provenance) -> Result<Vec<u8>, FormatError> {
-    let mut document = Document::default();
+fn bytes(meshes: &[Mesh], provenance: &Provenance, time_scale: f64) -> Result<Vec<u8>, FormatError> {
+    let mut document = Document::new(time_scale);
     let mut nodes = Vec::new();
     for mesh in meshes {
         nodes.extend(document.node(mesh)?);
@@ -62,7 +64,7 @@ impl FileFormat for BinaryGltf {
     }
 
     fn frame(&self, shot: &Shot<'_>) -> Result<Vec<u8>, FormatError> {
-        to_glb(shot.objects, shot.provenance)
+        bytes(shot.objects, shot.provenance, shot.scene.frames.time_scale())
     }
 
     /// `asset.generator`: magic, version, length; then length, type and text of the JSON chunk.
@@ -101,14 +103,19 @@ fn asset(provenance: &Provenance) -> Result<Asset, FormatError> {
 }
 
 /// A document in the making.
-#[derive(Default)]
 struct Document {
+    convention: Convention,
     root: Root,
     binary: Vec<u8>,
     materials: BTreeMap<Slot, Index<Material>>,
 }
 
 impl Document {
+    fn new(time_scale: f64) -> Self {
+        let convention = Convention { up: UpAxis::Y, time_scale };
+        Self { convention, root: Root::default(), binary: Vec::new(), materials: BTreeMap::new() }
+    }
+
     /// Adds `mesh` with its node; a mesh without vertices adds nothing, the format has no empty meshes.
     fn node(&mut self, mesh: &Mesh) -> Result<Option<Index<Node>>, FormatError> {
         let primitives = self.primitives(mesh);
@@ -132,7 +139,7 @@ impl Document {
 
     fn primitives(&mut self, mesh: &Mesh) -> Vec<Primitive> {
         if mesh.content == Content::Points {
-            let vertices: Vec<_> = mesh.vertices.iter().map(|v| pack(v, UpAxis::Y)).collect();
+            let vertices: Vec<_> = mesh.vertices.iter().map(|v| pack(v, self.convention)).collect();
             let attributes = self.common_attributes(&vertices);
             let primitive = Primitive { mode: Valid(Mode::Points), ..primitive(attributes) };
             return if vertices.is_empty() { Vec::new() } else { vec![primitive] };
@@ -142,7 +149,7 @@ impl Document {
     }
 
     fn triangles(&mut self, mesh: &Mesh, slot: Slot) -> Primitive {
-        let (vertices, triangles) = compact(mesh, mesh.slot(slot), UpAxis::Y);
+        let (vertices, triangles) = compact(mesh, mesh.slot(slot), self.convention);
         let mut attributes = self.common_attributes(&vertices);
         let normals = vertices.iter().flat_map(|v| v.normal);
         let normals = self.floats(normals, vertices.len(), Type::Vec3);
@@ -237,16 +244,12 @@ fn primitive(attributes: Attributes) -> Primitive {
     }
 }
 
-/// Plain materials to be replaced by the artist: a pale smooth skin, rougher and darker fracture surfaces.
 fn material(slot: Slot) -> Material {
-    let (color, roughness) = match slot {
-        Slot::Outside => ([0.75, 0.78, 0.8, 1.0], 0.35),
-        Slot::Inside => ([0.45, 0.5, 0.53, 1.0], 0.7),
-    };
+    let ([red, green, blue], roughness) = color_and_roughness(slot);
     Material {
         name: Some(slot.name().to_owned()),
         pbr_metallic_roughness: PbrMetallicRoughness {
-            base_color_factor: PbrBaseColorFactor(color),
+            base_color_factor: PbrBaseColorFactor([red, green, blue, 1.0]),
             metallic_factor: StrengthFactor(0.0),
             roughness_factor: StrengthFactor(roughness),
             ..PbrMetallicRoughness::default()

@@ -2,10 +2,10 @@
 
 use super::{FileFormat, FormatError, Shot};
 use crate::mesh::{Content, Mesh};
-use crate::packed::{PackedVertex, compact, pack};
+use crate::packed::{Convention, PackedVertex, compact, pack};
 use crate::provenance::Provenance;
 use crate::slot::Slot;
-use fissure_scene::{Part, UpAxis};
+use fissure_scene::Part;
 use ply_rs_bw::ply::{
     Addable, ElementDef, Encoding, Ply, PropertyAccess, PropertyDef, PropertyType::List, PropertyType::Scalar,
     ScalarType,
@@ -17,18 +17,18 @@ const MESH_PROPERTIES: [&str; 13] = ["x", "y", "z", "nx", "ny", "nz", "s", "t", 
 /// Vertex properties of points.
 const POINT_PROPERTIES: [&str; 7] = ["x", "y", "z", "vx", "vy", "vz", "piece"];
 
-/// The bytes of a PLY file with all `meshes`, `up` pointing up.
+/// The bytes of a PLY file with all `meshes`.
 ///
 /// Piece number and slot (0 outside, 1 inside) are properties of the vertices, not of the faces: meshio 5.3.5 cannot
 /// read binary files with face properties. Comments say where the file comes from.
 ///
 /// # Errors
 /// When the writer refuses, which for a buffer in memory means a mistake of ours.
-pub fn to_ply(meshes: &[Mesh], provenance: &Provenance, up: UpAxis) -> Result<Vec<u8>, FormatError> {
+fn bytes(meshes: &[Mesh], provenance: &Provenance, convention: Convention) -> Result<Vec<u8>, FormatError> {
     let points_only = !meshes.is_empty() && meshes.iter().all(|m| m.content == Content::Points);
     let (mut vertices, mut faces) = (Vec::new(), Vec::new());
     for mesh in meshes {
-        add_rows(mesh, up, &mut vertices, &mut faces);
+        add_rows(mesh, convention, &mut vertices, &mut faces);
     }
 
     let mut ply = Ply::<Row>::new();
@@ -48,9 +48,9 @@ pub fn to_ply(meshes: &[Mesh], provenance: &Provenance, up: UpAxis) -> Result<Ve
         ply.header.elements.add(face);
         ply.payload.insert("face".to_owned(), faces);
     }
-    let mut bytes = Vec::new();
-    Writer::new().write_ply(&mut bytes, &mut ply)?;
-    Ok(bytes)
+    let mut written = Vec::new();
+    Writer::new().write_ply(&mut written, &mut ply)?;
+    Ok(written)
 }
 
 /// Binary PLY.
@@ -62,7 +62,7 @@ impl FileFormat for Polygons {
     }
 
     fn frame(&self, shot: &Shot<'_>) -> Result<Vec<u8>, FormatError> {
-        to_ply(shot.objects, shot.provenance, shot.up)
+        bytes(shot.objects, shot.provenance, shot.played(shot.up))
     }
 
     /// The first comment of the header.
@@ -83,15 +83,15 @@ fn comments(provenance: &Provenance) -> Vec<String> {
 }
 
 /// Adds vertices and faces of `mesh`; the vertices of each slot are its own, so that each has one slot.
-fn add_rows(mesh: &Mesh, up: UpAxis, vertices: &mut Vec<Row>, faces: &mut Vec<Row>) {
+fn add_rows(mesh: &Mesh, convention: Convention, vertices: &mut Vec<Row>, faces: &mut Vec<Row>) {
     let piece = mesh.piece as f32;
     if mesh.content == Content::Points {
-        vertices.extend(mesh.vertices.iter().map(|v| Row::Vertex { vertex: pack(v, up), piece, slot: 0.0 }));
+        vertices.extend(mesh.vertices.iter().map(|v| Row::Vertex { vertex: pack(v, convention), piece, slot: 0.0 }));
         return;
     }
     for slot in Slot::ALL {
         let first = vertices.len() as i32;
-        let (of_slot, triangles) = compact(mesh, mesh.slot(slot), up);
+        let (of_slot, triangles) = compact(mesh, mesh.slot(slot), convention);
         let slot = f32::from(slot as u8);
         vertices.extend(of_slot.into_iter().map(|vertex| Row::Vertex { vertex, piece, slot }));
         faces.extend(triangles.iter().map(|t| Row::Face(t.map(|i| first + i as i32))));

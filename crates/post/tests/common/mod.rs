@@ -64,7 +64,7 @@ pub fn scene(region: Region) -> Scene {
             speed_curve: Curve::default(),
             branching: None,
         },
-        frames: FrameSettings { first: 1, last: 10, rate: 24.0 },
+        frames: FrameSettings { first: 1, last: 10, rate: 24.0, playback: 24.0 },
         output: OutputSettings {
             thickness: 0.3,
             formats: Vec::new(),

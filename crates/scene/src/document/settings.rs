@@ -189,6 +189,9 @@ pub struct FrameKeys {
     /// Frames per second of simulated time. Default: 24. Cracks are fast: slow motion needs thousands.
     #[schemars(transform = FRAME_RATE.bounds())]
     pub rate: Option<f64>,
+    /// Frames per second at which the sequence is shown. Default: 24. Velocities of meshes are per second of playback.
+    #[schemars(transform = FRAME_RATE.bounds())]
+    pub playback: Option<f64>,
 }
 
 /// Which meshes to write.
@@ -198,7 +201,7 @@ pub struct OutputKeys {
     /// Thickness of the solids in m. Default: a tenth of the larger side of the bodies' bounding box.
     #[schemars(transform = LENGTH.bounds())]
     pub thickness: Option<f64>,
-    /// File formats: `glb`, `ply`. Default: both.
+    /// File formats: `glb`, `ply`, `obj`, `usda`, `vtk`, `svg`. Default: `glb` and `ply`.
     pub formats: Vec<Format>,
     /// What to write: `cracked` (default), `body`, `faces`, `collider`, `particles`.
     pub parts: Vec<Part>,

@@ -137,6 +137,7 @@ impl Scene {
         }
         let frames = |key: &str| KeyPath::setting("frames", key);
         FRAME_RATE.check(frames("rate"), "the frame rate", f.rate)?;
+        FRAME_RATE.check(frames("playback"), "the frame rate of playback", f.playback)?;
         if f.first < 0 {
             let message = format!("the first frame is {}", f.first);
             return Err(SceneFault::new(frames("first"), message, "frame numbers start at 0 or above"));

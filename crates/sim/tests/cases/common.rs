@@ -57,7 +57,7 @@ pub(crate) fn plate(size: [f64; 2], cell_size: f64, frame_time: f64) -> Scene {
         cell_size,
         solver,
         growth,
-        frames: FrameSettings { first: 0, last: 0, rate: 1.0 / frame_time },
+        frames: FrameSettings { first: 0, last: 0, rate: 1.0 / frame_time, playback: 24.0 },
         output: OutputSettings {
             thickness: 1.0,
             formats: Vec::new(),

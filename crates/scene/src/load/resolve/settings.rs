@@ -70,9 +70,10 @@ impl<'d> Resolver<'d> {
     pub(super) fn frames(&self) -> Resolved<FrameSettings> {
         let keys = &self.document.frames;
         let rate = keys.rate.unwrap_or(24.0);
+        let playback = keys.playback.unwrap_or(PLAYBACK);
         let Some(range) = &keys.range else {
             let first = keys.first.unwrap_or(1);
-            return Ok(FrameSettings { first, last: keys.last.unwrap_or(first.saturating_add(47)), rate });
+            return Ok(FrameSettings { first, last: keys.last.unwrap_or(first.saturating_add(47)), rate, playback });
         };
         let path = KeyPath::setting("frames", "range");
         if keys.first.is_some() || keys.last.is_some() {
@@ -83,7 +84,7 @@ impl<'d> Resolver<'d> {
         let (first, last) = ends.ok_or_else(|| {
             SceneFault::new(path, format!("`{range}` is not a range of frames"), "write it as `range = \"1-48\"`")
         })?;
-        Ok(FrameSettings { first, last, rate })
+        Ok(FrameSettings { first, last, rate, playback })
     }
 
     pub(super) fn output(&self, side: f64) -> Resolved<OutputSettings> {
@@ -96,6 +97,12 @@ impl<'d> Resolver<'d> {
                 message,
                 "name at least one, or leave it out",
             ));
+        }
+        let is_shown = |format: &&Format| keys.parts.iter().any(|&part| format.shows(part));
+        if let Some(format) = keys.formats.iter().find(|format| !is_shown(format)) {
+            let message = format!("`{}` shows none of the `parts`", format.name());
+            let remedy = "add the part `cracked`, or leave the format out";
+            return Err(SceneFault::new(KeyPath::setting("output", "formats"), message, remedy));
         }
         Ok(OutputSettings {
             thickness: keys.thickness.unwrap_or(0.1 * side),

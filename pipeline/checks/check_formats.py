@@ -1,0 +1,201 @@
+"""Holds USD, VTK, OBJ and SVG files of a run against its GLB files and its take.
+
+    pip install numpy safetensors usd-core vtk meshio trimesh
+    python check_formats.py OUT/NAME.take FOLDER
+
+FOLDER holds the files of `fissure post OUT/NAME.take --formats glb,obj,usda,vtk,svg --parts cracked,particles,faces
+--output FOLDER`. In every frame that each format has:
+
+- USD: the stage over all frames opens, and its points, normals, velocities and materials are those of the GLB file, to
+  the bit, and texture coordinates upwards; a fragment that is not there yet has no points; extents hold the points; a
+  file of a frame by itself says the same.
+- VTK: its own reader reads surfaces with as many triangles as the manifest says, and of its volume within 1e-5 (which
+  the reader sums in single precision); it and meshio read the particles of the take, to the bit; the list names the times.
+- OBJ: trimesh reads each object, watertight, and of the volume of the GLB file within 1e-6.
+- SVG: the fragments have the area of the manifest within 1e-6.
+"""
+
+import json
+import pathlib
+import re
+import sys
+import xml.etree.ElementTree
+
+import meshio
+import numpy
+import trimesh
+import vtk
+from glb import Glb
+from pxr import Usd, UsdGeom, UsdShade
+from safetensors.numpy import load_file
+from vtk.util.numpy_support import vtk_to_numpy
+
+VTK_VOLUME = 1e-5
+RELATIVE = 1e-6
+
+
+def primitives(path):
+    """(object, material) -> attributes of each primitive of a GLB file."""
+    glb = Glb(path)
+    names = [material["name"] for material in glb.document.get("materials", [])]
+    found = {}
+    for node in glb.document["nodes"]:
+        for primitive in glb.document["meshes"][node["mesh"]]["primitives"] if "mesh" in node else []:
+            material = names[primitive["material"]] if "material" in primitive else None
+            arrays = {name: glb.table(number) for name, number in primitive["attributes"].items()}
+            if "indices" in primitive:
+                arrays["indices"] = glb.table(primitive["indices"]).reshape(-1)
+            found[node["name"], material] = arrays
+    return found
+
+
+def usd_problems(stage, frame, expected):
+    """Problems of one frame of a stage."""
+    problems, missing = [], set(expected)
+    for prim in stage.Traverse():
+        if not prim.IsA(UsdGeom.PointBased):
+            continue
+        shape = UsdGeom.PointBased(prim)
+        read = lambda attribute: numpy.array(attribute.Get(frame) or [])
+        points = read(shape.GetPointsAttr())
+        if len(points) == 0:
+            continue
+        material = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()[0]
+        key = prim.GetParent().GetDisplayName(), material.GetPrim().GetName() if material else None
+        if key not in expected:
+            problems.append(f"{key} is not in the GLB file")
+            continue
+        missing.discard(key)
+        want = expected[key]
+        found = {"POSITION": points, "_VELOCITY": read(shape.GetVelocitiesAttr())}
+        if "indices" in want:
+            mesh = UsdGeom.Mesh(prim)
+            found["NORMAL"] = read(mesh.GetNormalsAttr())
+            found["indices"] = read(mesh.GetFaceVertexIndicesAttr())
+            found["TEXCOORD_0"] = read(UsdGeom.PrimvarsAPI(prim).GetPrimvar("st"))
+            want = {**want, "TEXCOORD_0": [0, 1] + want["TEXCOORD_0"] * [1, -1]}
+            if set(read(mesh.GetFaceVertexCountsAttr())) != {3} or mesh.GetNormalsInterpolation() != "vertex":
+                problems.append(f"{key}: no triangles with a normal for each vertex")
+        for name, values in found.items():
+            # 1 − (1 − v) is not v to the bit.
+            tolerance = 1e-7 if name == "TEXCOORD_0" else 0.0
+            if values.shape != want[name].shape or numpy.abs(values - want[name]).max() > tolerance:
+                problems.append(f"{key}: {name} differs")
+        low, high = read(shape.GetExtentAttr())
+        if (points < low).any() or (points > high).any():
+            problems.append(f"{key}: the extent does not hold the points")
+    return problems + [f"{key} is missing" for key in missing]
+
+
+def check_usd(folder, records, sequences):
+    for sequence in sequences:
+        if sequence["file"].endswith(".clips.usda"):
+            continue
+        stage = Usd.Stage.Open(str(folder / sequence["file"]))
+        own = [record for record in records if record["part"] == sequence["part"]]
+        if (stage.GetStartTimeCode(), stage.GetEndTimeCode()) != (own[0]["frame"], own[-1]["frame"]):
+            yield sequence["file"], "plays other frames"
+        if UsdGeom.GetStageUpAxis(stage) != "Y" or UsdGeom.GetStageMetersPerUnit(stage) != 1:
+            yield sequence["file"], "is not in metres, y up"
+        for record in own:
+            expected = primitives((folder / record["file"]).with_suffix(".glb"))
+            for problem in usd_problems(stage, record["frame"], expected):
+                yield sequence["file"], f"frame {record['frame']}: {problem}"
+            alone = Usd.Stage.Open(str(folder / record["file"]))
+            for problem in usd_problems(alone, record["frame"], expected):
+                yield record["file"], problem
+
+
+def check_vtk(folder, records, sequences, take):
+    for sequence in sequences:
+        sets = xml.etree.ElementTree.parse(folder / sequence["file"]).getroot().iter("DataSet")
+        listed = [(float(one.get("timestep")), one.get("file")) for one in sets]
+        if listed != [(r["time"], r["file"]) for r in records if r["part"] == sequence["part"]]:
+            yield sequence["file"], "lists other frames"
+    for record in records:
+        path = str(folder / record["file"])
+        is_grid = path.endswith(".vtu")
+        reader = vtk.vtkXMLUnstructuredGridReader() if is_grid else vtk.vtkXMLPolyDataReader()
+        reader.SetFileName(path)
+        reader.Update()
+        data = reader.GetOutput()
+        if reader.GetErrorCode() or vtk_to_numpy(data.GetFieldData().GetArray("TimeValue"))[0] != record["time"]:
+            yield record["file"], "cannot be read, or is of another time"
+        elif is_grid:
+            frame = load_file(take / f"frame.{record['frame']:04}.safetensors")
+            by_meshio = meshio.read(path)
+            stress = frame["particles.cauchy_stress"].reshape(-1, 4)
+            expected = {
+                "velocity": numpy.pad(frame["particles.velocity"], ((0, 0), (0, 1))),
+                "cauchy_stress": numpy.stack([stress[:, 0], stress[:, 3], 0.5 * (stress[:, 1] + stress[:, 2])], 1),
+                "deformation_gradient": frame["particles.deformation_gradient"].reshape(-1, 4),
+                "piece": frame["particles.piece"],
+            }
+            for name, values in expected.items():
+                by_vtk = vtk_to_numpy(data.GetPointData().GetArray(name))
+                if not (numpy.array_equal(by_vtk, values) and numpy.array_equal(by_meshio.point_data[name], values)):
+                    yield record["file"], f"{name} differs"
+            if not numpy.array_equal(by_meshio.points[:, :2], frame["particles.position"]):
+                yield record["file"], "positions differ"
+        else:
+            if data.GetNumberOfPolys() != record["triangles"]:
+                yield record["file"], f"{data.GetNumberOfPolys()} of {record['triangles']} triangles"
+            if record["area"] > 0:
+                solid = vtk.vtkMassProperties()
+                solid.SetInputData(data)
+                if abs(solid.GetVolume() / record["volume"] - 1) > VTK_VOLUME:
+                    yield record["file"], f"volume {solid.GetVolume()} instead of {record['volume']}"
+
+
+def check_obj(folder, records):
+    for record in records:
+        scene = trimesh.load_scene(folder / record["file"], process=False, split_objects=True, group_material=False)
+        triangles = sum(len(mesh.faces) for mesh in scene.geometry.values() if hasattr(mesh, "faces"))
+        if triangles != record["triangles"]:
+            yield record["file"], f"trimesh reads {triangles} of {record['triangles']} triangles"
+        names = re.findall(r"^o (.*)$", (folder / record["file"]).read_text(), re.M)
+        if names != [one["name"] for one in record["objects"]]:
+            yield record["file"], f"objects {names}"
+        if record["area"] > 0:
+            volume = sum(mesh.volume for mesh in scene.geometry.values())
+            if not abs(volume / record["volume"] - 1) <= RELATIVE:
+                yield record["file"], f"volume {volume} instead of {record['volume']}"
+
+
+def check_svg(folder, records):
+    for record in records:
+        root = xml.etree.ElementTree.parse(folder / record["file"]).getroot()
+        area = 0.0
+        for path in root.find(".//*[@id='fragments']"):
+            for ring in path.get("d").split("Z")[:-1]:
+                x, y = numpy.array(re.findall(r"[ML](\S+) ([^ML]+)", ring), float).T / 1000
+                # y down: what is counter-clockwise in the scene is clockwise here.
+                area -= 0.5 * float(numpy.sum(x * numpy.roll(y, -1) - y * numpy.roll(x, -1)))
+        if not abs(area / record["area"] - 1) <= RELATIVE:
+            yield record["file"], f"area {area} instead of {record['area']}"
+
+
+def main(take, folder):
+    take, folder = pathlib.Path(take), pathlib.Path(folder)
+    manifest = json.loads((folder / "manifest.json").read_text())
+
+    def of(kind, name):
+        return [record for record in manifest.get(kind, []) if record["format"] == name]
+
+    problems = [
+        *check_usd(folder, of("files", "usda"), of("sequences", "usda")),
+        *check_vtk(folder, of("files", "vtk"), of("sequences", "vtk"), take),
+        *check_obj(folder, of("files", "obj")),
+        *check_svg(folder, of("files", "svg")),
+    ]
+    for file, problem in problems:
+        print(f"{file}: {problem}", file=sys.stderr)
+    counts = ", ".join(f"{len(of('files', name))} {name}" for name in ("usda", "vtk", "obj", "svg"))
+    print(f"{counts} and what goes with them: {len(problems)} problems")
+    sys.exit(bool(problems))
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit("usage: check_formats.py TAKE FOLDER")
+    main(*sys.argv[1:])
