@@ -2,6 +2,7 @@
 
 use crate::axis::Axis;
 use crate::bars::{self, Bar};
+use crate::drawing::{self, Stroke};
 use crate::lines::{self, Line};
 use crate::map::{self, Map};
 use crate::style::{COLOURS, sheet};
@@ -11,6 +12,8 @@ use crate::svg::{Anchor, Svg, width};
 const WIDTH: f64 = 880.0;
 /// Height of a panel of lines [px].
 const PANEL: f64 = 300.0;
+/// Height of a panel with a drawing [px].
+const DRAWING: f64 = 240.0;
 const MARGIN: f64 = 12.0;
 /// Height of a line of small text [px].
 const LEADING: f64 = 16.0;
@@ -36,6 +39,8 @@ pub enum Plot {
     },
     /// A map of two parameters.
     Map(Map),
+    /// Lines to scale.
+    Drawing(Vec<Stroke>),
 }
 
 /// One plot with its title.
@@ -87,6 +92,7 @@ impl Figure {
                     Plot::Lines { x, y, lines } => lines::draw(&mut svg, area, (x, y), lines),
                     Plot::Bars { parts, bars } => bars::draw(&mut svg, area, parts, bars),
                     Plot::Map(map) => map::draw(&mut svg, area, map),
+                    Plot::Drawing(strokes) => drawing::draw(&mut svg, area, strokes),
                 }
             }
             y += height + 10.0;
@@ -110,7 +116,7 @@ impl Figure {
                 Plot::Bars { parts, .. } => {
                     entries.extend(parts.iter().enumerate().map(|(k, part)| (part.as_str(), k % COLOURS, "bar")));
                 }
-                Plot::Map(_) => {}
+                Plot::Map(_) | Plot::Drawing(_) => {}
             }
         }
         let mut x = MARGIN;
@@ -141,6 +147,7 @@ fn height(panel: &Panel) -> f64 {
         Plot::Lines { .. } => PANEL,
         Plot::Bars { bars, .. } => 26.0 + bars::PITCH * bars.len() as f64,
         Plot::Map(map) => 24.0 + map::height(map),
+        Plot::Drawing(_) => DRAWING,
     }
 }
 

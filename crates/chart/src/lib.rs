@@ -1,4 +1,5 @@
-//! Charts of numbers as SVG: lines on linear or logarithmic axes, bars of parts, maps of two parameters.
+//! Charts of numbers as SVG: lines on linear or logarithmic axes, bars of parts, maps of two parameters,
+//! drawings to scale.
 //!
 //! Promises: one file suits light and dark pages, because colours are classes of a style sheet that asks for the
 //! preference of the reader; text is text; the same numbers give the same bytes. Does not promise interaction, nor a
@@ -24,6 +25,7 @@
 
 mod axis;
 mod bars;
+mod drawing;
 mod figure;
 mod lines;
 mod map;
@@ -32,6 +34,7 @@ mod svg;
 
 pub use axis::{Axis, Scale};
 pub use bars::Bar;
+pub use drawing::Stroke;
 pub use figure::{Figure, Panel, Plot};
 pub use lines::Line;
 pub use map::Map;

@@ -14,8 +14,8 @@ const STEPS: [&str; MAP_STEPS] = ["#2c7bb6", "#6fb3d2", "#abd9e9", "#f2f0b6", "#
 pub(crate) const MAP_STEPS: usize = 7;
 
 /// The style sheet of every figure. Classes: `k` frames, `m` muted text, `b` text on bars, `g` grid lines,
-/// `p` fronts, `l` lines, `s0` .. strokes, `f0` .. fills, `q0` .. cells of maps, `n` one without a value, `c` text in
-/// them.
+/// `p` fronts, `l` lines, `t` thin ones, `s0` .. strokes, `f0` .. fills, `q0` .. cells of maps, `n` one without a
+/// value, `c` text in them.
 pub(crate) fn sheet() -> String {
     let colours = |palette: &[&str; COLOURS]| -> String {
         let rule = |(k, colour): (usize, &&str)| format!(".s{k}{{stroke:{colour}}}.f{k}{{fill:{colour}}}");
@@ -27,7 +27,7 @@ pub(crate) fn sheet() -> String {
          .m{{fill:#59636e}}.b{{fill:#ffffff}}.g{{stroke:#e4e7eb;stroke-width:1}}\
          .k{{stroke:#59636e;stroke-width:1;fill:none}}\
          .p{{stroke:#8c959f;stroke-width:5;fill:none;opacity:.35;stroke-linejoin:round}}\
-         .l{{fill:none;stroke-width:1.6;stroke-linejoin:round}}.n{{fill:#8c959f}}.c{{fill:#14181d}}{}{steps}\
+         .l{{fill:none;stroke-width:1.6;stroke-linejoin:round}}.t{{fill:none;stroke-width:.9;stroke-linejoin:round}}.n{{fill:#8c959f}}.c{{fill:#14181d}}{}{steps}\
          @media (prefers-color-scheme:dark){{text{{fill:#e6edf3}}.m{{fill:#9198a1}}.b{{fill:#0d1117}}.g{{stroke:#2a3038}}\
          .k{{stroke:#9198a1}}.p{{stroke:#9198a1}}.c{{fill:#14181d}}{}}}",
         colours(&LIGHT),

@@ -67,6 +67,11 @@ pub(crate) enum Command {
                       fissure verify edge-crack --places 32   wherever it lies on the grid\n  \
                       fissure verify all                      the full table")]
     Verify(VerifyArguments),
+    /// Run a scene at three resolutions, and print what changes: order, extrapolated values, distance of paths.
+    ///
+    /// Cells are four times, twice and once as large as the scene asks for. Writes no take and no meshes.
+    #[command(after_help = "Example:\n  fissure converge examples/pull/scene.toml --csv pull-convergence.csv")]
+    Converge(ConvergeArguments),
     /// Measure accuracy against time, and draw it: tables and figures for `docs/charts`.
     ///
     /// Each measurement is on the disk as soon as it is made. Interrupted, the same command goes on.
@@ -338,6 +343,22 @@ pub(crate) struct VerifyArguments {
     pub(crate) threads: Option<u16>,
 }
 
+/// Arguments of `converge`.
+#[derive(Debug, Args)]
+pub(crate) struct ConvergeArguments {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+    /// How many times smaller cells are from run to run, 1.2 to 4.
+    #[arg(long, value_name = "R", default_value_t = 2.0, value_parser = parse_ratio)]
+    pub(crate) ratio: f64,
+    /// Write the table as comma-separated values too.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) csv: Option<PathBuf>,
+    /// Threads to compute with [default: one per core]. The numbers do not depend on it.
+    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+}
+
 /// Arguments of `chart`.
 #[derive(Debug, Args)]
 pub(crate) struct ChartArguments {
@@ -347,6 +368,9 @@ pub(crate) struct ChartArguments {
     /// Few and coarse runs, which show the shape.
     #[arg(long)]
     pub(crate) quick: bool,
+    /// Folder with the examples, for the charts of them.
+    #[arg(long, value_name = "DIR", default_value = "examples", value_hint = ValueHint::DirPath)]
+    pub(crate) examples: PathBuf,
     /// Folder to write into; made when missing.
     #[arg(long, value_name = "DIR", default_value = "docs/charts", value_hint = ValueHint::DirPath)]
     pub(crate) output: PathBuf,
@@ -360,11 +384,17 @@ pub(crate) struct ChartArguments {
 pub(crate) enum ChartName {
     /// Errors against time, for each way to solve.
     Accuracy,
+    /// Speed and memory over the number of particles, with and without cracks.
+    Speed,
+    /// Where the time of each example goes.
+    Stages,
+    /// An example at four resolutions.
+    Visual,
 }
 
 impl ChartName {
     /// All, in the order in which they are made.
-    pub(crate) const ALL: [Self; 1] = [Self::Accuracy];
+    pub(crate) const ALL: [Self; 4] = [Self::Speed, Self::Stages, Self::Visual, Self::Accuracy];
 }
 
 /// How to speak.
@@ -407,6 +437,8 @@ enum NumberError {
     CellsOutOfRange,
     #[error("the view can be turned by -80 to 80 degrees")]
     TurnOutOfRange,
+    #[error("the ratio must be 1.2 to 4")]
+    RatioOutOfRange,
 }
 
 fn parse_length(word: &str) -> Result<f64, NumberError> {
@@ -423,6 +455,11 @@ fn parse_cells(word: &str) -> Result<f64, NumberError> {
 fn parse_turn(word: &str) -> Result<f64, NumberError> {
     let value: f64 = word.parse().map_err(|_| NumberError::Unreadable)?;
     if (-80.0..=80.0).contains(&value) { Ok(value) } else { Err(NumberError::TurnOutOfRange) }
+}
+
+fn parse_ratio(word: &str) -> Result<f64, NumberError> {
+    let value: f64 = word.parse().map_err(|_| NumberError::Unreadable)?;
+    if (1.2..=4.0).contains(&value) { Ok(value) } else { Err(NumberError::RatioOutOfRange) }
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ mod caution;
 mod chart;
 mod check;
 mod completions;
+mod converge;
 mod drawn;
 mod exit;
 mod failure;
@@ -21,6 +22,7 @@ mod post;
 mod preview;
 mod progress;
 mod report;
+mod richardson;
 mod run;
 mod scene_file;
 mod schema;
@@ -68,6 +70,7 @@ fn execute(command: &Command, interrupt: &Interrupt, report: &Report) -> Result<
         Command::Post(arguments) => post::post(arguments, interrupt, report),
         Command::Preview(arguments) => preview::preview(arguments, interrupt, report),
         Command::Verify(arguments) => verify::verify(arguments, report),
+        Command::Converge(arguments) => converge::converge(arguments, interrupt, report),
         Command::Chart(arguments) => chart::chart(arguments, report),
         Command::Schema => schema::schema(),
         Command::Completions(arguments) => completions::completions(arguments),

@@ -167,6 +167,22 @@ fn verify_prints_what_a_case_found_beside_what_it_should() {
     }
 }
 
+/// Truth: what does not depend on cells is the same with all, and what is said is also written.
+#[test]
+fn converge_holds_three_resolutions_against_each_other() {
+    let folder = workplace();
+    let arguments = ["converge", "plate.toml", "--set", "growth.enabled=false", "--csv", "tables/c.csv"];
+    let text = expect(&run(folder.path(), &arguments), 0);
+    assert!(text.contains("highest K_I before it grows") && !text.contains("begins to grow"), "{text}");
+    let table = std::fs::read_to_string(folder.path().join("tables/c.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
+    assert!(rows.iter().all(|row| row.len() == 9), "{table}");
+    let spacings: Vec<f64> = rows[1][2..5].iter().map(|cell| cell.parse().unwrap()).collect();
+    assert_eq!((spacings[0] / spacings[1], spacings[1] / spacings[2]), (2.0, 2.0));
+    let told = expect(&run(folder.path(), &["converge", "plate.toml", "--ratio", "1"]), 2);
+    assert!(told.contains("the ratio must be 1.2 to 4"), "{told}");
+}
+
 #[test]
 fn quiet_says_nothing_when_all_is_well() {
     let folder = workplace();

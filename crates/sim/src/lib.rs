@@ -111,7 +111,7 @@ pub use material::constitutive::{
     volume_change,
 };
 pub use material::elastic::Elastic;
-pub use simulation::{Counts, Estimate, Progress, Simulation};
+pub use simulation::{Counts, Estimate, Progress, Simulation, Stage};
 pub use tip::stress_intensity::{StressIntensity, crack_speed_factors, universal_function};
 pub use tip::williams::{TipField, moving_tip_fields, williams_fields};
 pub use wide::widest_instructions;

@@ -2,8 +2,12 @@
 //! goes on where it was interrupted.
 
 mod accuracy;
+mod examples;
 mod origin;
+mod speed;
+mod stages;
 mod table;
+mod visual;
 
 use crate::args::{ChartArguments, ChartName};
 use crate::exit::Exit;
@@ -35,6 +39,9 @@ pub(crate) fn chart(arguments: &ChartArguments, report: &Report) -> Result<Exit,
         if arguments.name.is_none_or(|name| name == chart) {
             match chart {
                 ChartName::Accuracy => accuracy::chart(&charting)?,
+                ChartName::Speed => speed::chart(&charting)?,
+                ChartName::Stages => stages::chart(&charting, &arguments.examples)?,
+                ChartName::Visual => visual::chart(&charting, &arguments.examples)?,
             }
         }
     }

@@ -1,6 +1,7 @@
 //! One step of a simulation and what it makes the cracks do.
 
 use super::Simulation;
+use super::stages::Stage;
 use crate::SimulationError;
 use crate::crack::assessment::Assessment;
 use crate::crack::cracks::TipId;
@@ -66,7 +67,7 @@ impl Simulation {
     /// One step and what it makes the cracks do. `is_last`: the last one of a frame, after which the records of all
     /// tips are wanted.
     pub(super) fn one_step(&mut self, time_step: f64, is_last: bool) -> Result<(), SimulationError> {
-        let Self { scene, elastic, solver, state, counts, .. } = self;
+        let Self { scene, elastic, solver, state, counts, stages, .. } = self;
         let gauge = Gauge { scene, elastic };
         let every = is_last || !scene.growth.enabled;
         let mut live = state.cracks.live();
@@ -78,12 +79,16 @@ impl Simulation {
         });
         let cracks = &state.cracks;
         let mut assessed: Vec<Assessment> = Vec::with_capacity(live.len());
+        stages.enter(Stage::Motion);
         let mut observe = |moment: &dyn Observed| {
+            stages.enter(Stage::Looks);
             for &id in &live {
                 assessed.push(growth::assess(&gauge.read(moment, cracks, id), scene));
             }
+            stages.enter(Stage::Motion);
         };
         solver.step(cracks, state.time, time_step, &mut observe)?;
+        stages.enter(Stage::Growth);
         state.steps += 1;
         counts.steps += 1;
         counts.looks += live.len() as u64;
@@ -106,6 +111,7 @@ impl Simulation {
         let tips = live.iter().zip(assessed).map(|(&id, assessed)| self.ready(id, assessed, time, time_step)).collect();
         self.grow(tips, time);
         self.branch_off(time);
+        self.stages.enter(Stage::Between);
         Ok(())
     }
 

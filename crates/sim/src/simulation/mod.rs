@@ -10,12 +10,14 @@ mod far_apart;
 mod growing;
 mod relaxation;
 mod saving;
+mod stages;
 mod switching;
 mod view;
 mod watch;
 
 pub use counts::Counts;
 pub use estimate::Estimate;
+pub use stages::Stage;
 
 use crate::crack::cracks::Cracks;
 use crate::crack::fragments;
@@ -27,6 +29,7 @@ use crate::{SimulationError, foresight, memory};
 use branching_off::WaitingBranch;
 use fissure_scene::{Formulation, Scene};
 use serde::{Deserialize, Serialize};
+use stages::StageWatch;
 use std::sync::Arc;
 
 /// A simulation in progress.
@@ -39,6 +42,7 @@ pub struct Simulation {
     formulation: Formulation,
     state: RunState,
     counts: Counts,
+    stages: StageWatch,
     /// Largest stable time step at the last look [s].
     stable_time_step: f64,
 }
@@ -117,6 +121,7 @@ impl Simulation {
             },
             particles,
             counts: Counts::default(),
+            stages: StageWatch::default(),
             stable_time_step: 0.0,
         };
         simulation.split_fragments();

@@ -78,6 +78,7 @@ impl Simulation {
             formulation: saved.formulation,
             state: saved.state,
             counts: Counts::default(),
+            stages: super::stages::StageWatch::default(),
             stable_time_step: 0.0,
         })
     }
