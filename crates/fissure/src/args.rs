@@ -53,11 +53,12 @@ pub(crate) enum Command {
         after_help = "Example:\n  fissure post out/pull/pull.take --thickness 0.2 --formats glb,ply --frames 1-45x2"
     )]
     Post(PostArguments),
-    /// Draw pictures of a run: frames as PNG, a contact sheet and a GIF.
+    /// Draw a run: frames as PNG, a contact sheet and a GIF, or a page to turn it about in a browser.
     #[command(
         after_help = "Examples:\n  fissure preview out/pull                                  what a run looks like\n  \
                       fissure preview out/pull --color stress --theme dark      where it is pulled and pressed\n  \
-                      fissure preview out/pull --frames 8,16,48 --pictures sheet  three frames side by side"
+                      fissure preview out/pull --frames 8,16,48 --pictures sheet  three frames side by side\n  \
+                      fissure preview out/pull --html                           a page to turn it about"
     )]
     Preview(PreviewArguments),
     /// Compute problems with known solutions and print what comes out beside what should.
@@ -203,6 +204,9 @@ pub(crate) struct RunArguments {
     /// Frames to write meshes of, e.g. `1-45x2` (every second) or `1,10,20-30`; simulation stops at the last of them.
     #[arg(long, value_name = "RANGE")]
     pub(crate) frames: Option<FrameSet>,
+    /// Draw the run at its end, as `fissure preview` does, and make its page.
+    #[arg(long)]
+    pub(crate) preview: bool,
 }
 
 /// Arguments of `sim`.
@@ -245,16 +249,13 @@ pub(crate) struct PreviewArguments {
     /// The output folder of a run, or a take, a folder ending in `.take`.
     #[arg(value_name = "RUN", value_hint = ValueHint::DirPath)]
     pub(crate) run: PathBuf,
-    /// What to make: frames (a PNG each), sheet (a PNG of up to 12 frames side by side), gif.
-    #[arg(
-        long,
-        value_name = "WHAT,..",
-        value_delimiter = ',',
-        value_enum,
-        hide_possible_values = true,
-        default_value = "frames,sheet,gif"
-    )]
+    /// What to make: frames (a PNG each), sheet (a PNG of up to 12 frames side by side), gif [default: all of them;
+    /// with `--html` none].
+    #[arg(long, value_name = "WHAT,..", value_delimiter = ',', value_enum, hide_possible_values = true)]
     pub(crate) pictures: Vec<PictureKind>,
+    /// Make a page of the meshes and curves, one file for any browser, without a network.
+    #[arg(long)]
+    pub(crate) html: bool,
     /// Frames to draw, e.g. `1-45x2` or `1,10,20-30` [default: all].
     #[arg(long, value_name = "RANGE")]
     pub(crate) frames: Option<FrameSet>,
@@ -265,7 +266,7 @@ pub(crate) struct PreviewArguments {
     #[arg(long, value_name = "THEME", value_enum, hide_possible_values = true, default_value_t = ThemeName::Light)]
     pub(crate) theme: ThemeName,
     /// Width of a picture in pixels; its height follows from what is in view.
-    #[arg(long, value_name = "PIXELS", default_value_t = 960, value_parser = value_parser!(u32).range(i64::from(*SIZES.start())..=i64::from(*SIZES.end())))]
+    #[arg(long, value_name = "PIXELS", default_value_t = DEFAULT_SIZE, value_parser = value_parser!(u32).range(i64::from(*SIZES.start())..=i64::from(*SIZES.end())))]
     pub(crate) size: u32,
     /// Degrees by which the view is turned about the upright axis; below 0 to see right sides, above 0 left ones.
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_negative_numbers = true, value_parser = parse_turn)]
@@ -281,6 +282,28 @@ pub(crate) struct PreviewArguments {
     pub(crate) threads: Option<u16>,
 }
 
+impl PreviewArguments {
+    /// All pictures and the page of the run in a folder.
+    pub(crate) fn everything_of(run: PathBuf) -> Self {
+        Self {
+            run,
+            pictures: vec![PictureKind::Frames, PictureKind::Sheet, PictureKind::Gif],
+            html: true,
+            frames: None,
+            color: ColorBy::Fragment,
+            theme: ThemeName::Light,
+            size: DEFAULT_SIZE,
+            yaw: 0.0,
+            pitch: 0.0,
+            output: None,
+            threads: None,
+        }
+    }
+}
+
+/// Width of a picture where none is asked for [pixels].
+const DEFAULT_SIZE: u32 = 960;
+
 /// A kind of picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum PictureKind {
@@ -290,6 +313,9 @@ pub(crate) enum PictureKind {
     Sheet,
     /// An animated GIF.
     Gif,
+    /// A page; it has an option of its own.
+    #[value(skip)]
+    Page,
 }
 
 /// What colours mean.

@@ -8,8 +8,8 @@ use crate::workers::contain;
 use fissure_files::Folder;
 use fissure_post::{PostOptions, post_frame};
 use fissure_preview::{
-    Animation, Detail, EncodeError, EncodedFrame, Kind, Picture, PreviewOptions, Survey, contact_sheet, draw_frame,
-    is_ours, sheet_frames, tile_options,
+    Animation, Detail, EncodeError, EncodedFrame, Kind, PackedFrame, Picture, PreviewOptions, Series, Survey,
+    contact_sheet, draw_frame, is_ours, page, sheet_frames, tile_options,
 };
 use fissure_scene::{Frame, Part, Scene};
 use std::collections::BTreeMap;
@@ -35,6 +35,7 @@ pub(crate) struct Pictures<'a> {
 struct Outcome {
     tiles: BTreeMap<i64, Picture>,
     animated: BTreeMap<i64, EncodedFrame>,
+    packed: BTreeMap<i64, PackedFrame>,
     drawn: usize,
     failed: Vec<i64>,
     worst: Option<Exit>,
@@ -44,6 +45,7 @@ struct Outcome {
 struct Kept {
     tile: Option<Picture>,
     animated: Option<EncodedFrame>,
+    packed: Option<PackedFrame>,
 }
 
 impl<'a> Pictures<'a> {
@@ -76,6 +78,7 @@ impl<'a> Pictures<'a> {
                 }
                 PictureKind::Sheet => files.push((Kind::Png, sheet_name(self.scene))),
                 PictureKind::Gif => files.push((Kind::Gif, animation_name(self.scene))),
+                PictureKind::Page => files.push((Kind::Html, page_name(self.scene))),
             }
         }
         for (kind, name) in files {
@@ -92,10 +95,11 @@ impl<'a> Pictures<'a> {
         let made = contain(|| self.draw(number, &get()?));
         let mut outcome = self.outcome.lock().unwrap_or_else(PoisonError::into_inner);
         match made {
-            Ok(Kept { tile, animated }) => {
+            Ok(Kept { tile, animated, packed }) => {
                 outcome.drawn += 1;
                 outcome.tiles.extend(tile.map(|tile| (number, tile)));
                 outcome.animated.extend(animated.map(|frame| (number, frame)));
+                outcome.packed.extend(packed.map(|frame| (number, frame)));
             }
             Err(failure) => {
                 outcome.failed.push(number);
@@ -126,14 +130,16 @@ impl<'a> Pictures<'a> {
             .on_sheet
             .contains(&number)
             .then(|| draw(&tile_options(&self.options, self.on_sheet.len()), Detail::Tile));
-        Ok(Kept { tile: tile.transpose()?, animated })
+        let packed = wanted(PictureKind::Page).then(|| PackedFrame::new(frame, &meshes)).transpose();
+        let packed = packed.map_err(|error| Failure::of(Exit::File, error))?;
+        Ok(Kept { tile: tile.transpose()?, animated, packed })
     }
 
     /// Writes what is made of several frames, and says what was written.
     ///
     /// # Errors
     /// When frames failed, or a file cannot be written.
-    pub(crate) fn finish(self) -> Result<String, Failure> {
+    pub(crate) fn finish(self, series: &Series) -> Result<String, Failure> {
         let outcome = self.outcome.into_inner().unwrap_or_else(PoisonError::into_inner);
         let told: Vec<String> = self.kinds.iter().map(|kind| kind.told(outcome.drawn)).collect();
         if !outcome.tiles.is_empty() {
@@ -144,6 +150,18 @@ impl<'a> Pictures<'a> {
         if !outcome.animated.is_empty() {
             let animation = Animation::new(outcome.animated.into_values().collect());
             self.folder.write(&animation_name(self.scene), &animation.to_gif()?)?;
+        }
+        if !outcome.packed.is_empty() {
+            let packed: Vec<PackedFrame> = outcome.packed.into_values().collect();
+            let page = page(self.scene, &packed, series, self.options.theme)
+                .map_err(|error| Failure::of(Exit::File, error))?;
+            if page.shown < page.of {
+                self.report.note(&format!(
+                    "the page shows {} of {} frames, so that it does not become too large for a browser; `--frames` says which to choose from",
+                    page.shown, page.of
+                ));
+            }
+            self.folder.write(&page_name(self.scene), page.html.as_bytes())?;
         }
         self.folder.sync()?;
         let Some(exit) = outcome.worst else { return Ok(told.join(", ")) };
@@ -166,6 +184,10 @@ fn sheet_name(scene: &Scene) -> String {
 
 fn animation_name(scene: &Scene) -> String {
     format!("{}.gif", scene.name)
+}
+
+fn page_name(scene: &Scene) -> String {
+    format!("{}.html", scene.name)
 }
 
 impl From<EncodeError> for Failure {

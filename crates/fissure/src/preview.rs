@@ -11,7 +11,7 @@ use crate::report::Report;
 use crate::workers::{Work, stream};
 use crate::{take_path, threads};
 use fissure_files::{Folder, Lock};
-use fissure_preview::{Coloring, PreviewOptions, Survey, Theme, View};
+use fissure_preview::{Coloring, PreviewOptions, Series, Survey, Theme, View};
 use fissure_scene::Take;
 use std::sync::{Mutex, PoisonError};
 
@@ -21,21 +21,39 @@ const FOLDER: &str = "preview";
 /// Draws pictures of a take.
 pub(crate) fn preview(arguments: &PreviewArguments, interrupt: &Interrupt, report: &Report) -> Result<Exit, Failure> {
     let threads = threads::set(arguments.threads)?;
+    draw(arguments, threads, interrupt, report)
+}
+
+/// The same on `threads` threads, of which the program has been told.
+///
+/// # Errors
+/// When there is no take, a frame of it cannot be drawn, or a file cannot be written.
+pub(crate) fn draw(
+    arguments: &PreviewArguments,
+    threads: usize,
+    interrupt: &Interrupt,
+    report: &Report,
+) -> Result<Exit, Failure> {
     let path = take_path::take_in(&arguments.run)?;
     let take = Take::open(&path)?;
     let numbers = take_path::chosen_frames(&take, &path, arguments.frames.as_ref())?;
     take.remarks()?.iter().for_each(|remark| report.warn(&remark.to_string()));
     let options = options(arguments);
-    let mut survey = Survey::new(options.coloring);
+    let kinds = kinds(arguments);
+    let (mut survey, mut series) = (Survey::new(options.coloring), Series::default());
     for &number in &numbers {
-        survey.add(&take.frame(number)?);
+        let frame = take.frame(number)?;
+        survey.add(&frame);
+        if arguments.html {
+            series.add(take.scene(), &frame);
+        }
     }
     let folder = arguments.output.clone().unwrap_or_else(|| take_path::folder_of(&path).join(FOLDER));
     let folder = Folder::new(folder);
     folder.make()?;
     let _lock = Lock::take(folder.path(), &invocation::typed())?;
     folder.remove_drafts()?;
-    let pictures = Pictures::new(take.scene(), &folder, &arguments.pictures, &numbers, &survey, options, report);
+    let pictures = Pictures::new(take.scene(), &folder, &kinds, &numbers, &survey, options, report);
     pictures.replace_nothing_foreign(&numbers)?;
     let progress = Mutex::new(TakeProgress::new(report, Made::Pictures, numbers.len()));
     let work = |work: Work| {
@@ -53,9 +71,20 @@ pub(crate) fn preview(arguments: &PreviewArguments, interrupt: &Interrupt, repor
         report.note("interrupted; run the same command again");
         return Ok(Exit::Interrupted);
     }
-    let written = pictures.finish()?;
+    let written = pictures.finish(&series)?;
     report.note(&format!("wrote {written} into `{}`", folder.path().display()));
     Ok(Exit::Done)
+}
+
+/// What is to be made.
+fn kinds(arguments: &PreviewArguments) -> Vec<PictureKind> {
+    let mut kinds = arguments.pictures.clone();
+    if arguments.html {
+        kinds.push(PictureKind::Page);
+    } else if kinds.is_empty() {
+        kinds.extend([PictureKind::Frames, PictureKind::Sheet, PictureKind::Gif]);
+    }
+    kinds
 }
 
 /// What was typed, as the crate that draws says it.
@@ -82,6 +111,7 @@ impl PictureKind {
             Self::Frames => format!("{frames} pictures"),
             Self::Sheet => "a contact sheet".to_owned(),
             Self::Gif => "an animation".to_owned(),
+            Self::Page => "a page".to_owned(),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! `fissure run`: the solver and the makers of meshes side by side.
 
-use crate::args::RunArguments;
+use crate::args::{PreviewArguments, RunArguments};
 use crate::drawn::Wanted;
 use crate::exit::Exit;
 use crate::failure::Failure;
@@ -10,7 +10,7 @@ use crate::meshes::{Mesher, must_show};
 use crate::report::Report;
 use crate::solve::{self, Outcome};
 use crate::workers::{Work, stream};
-use crate::{scene_file, threads};
+use crate::{preview, scene_file, threads};
 use fissure_post::Manifest;
 use fissure_scene::Take;
 
@@ -53,5 +53,10 @@ pub(crate) fn run(arguments: &RunArguments, interrupt: &Interrupt, report: &Repo
     let meshes = mesher.finish();
     let outcome = outcome?;
     meshes?;
-    Ok(solve::close(outcome, &folder, interrupt, report))
+    let exit = solve::close(outcome, &folder, interrupt, report);
+    if exit == Exit::Done && arguments.preview {
+        let everything = PreviewArguments::everything_of(folder.take.path().to_owned());
+        return preview::draw(&everything, threads, interrupt, report);
+    }
+    Ok(exit)
 }

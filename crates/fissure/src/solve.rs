@@ -203,7 +203,8 @@ pub(crate) fn close(outcome: Outcome, folder: &OutputFolder, interrupt: &Interru
         ));
         return Exit::Interrupted;
     }
-    report.note(&format!("done: `{}`", folder.root.path().display()));
+    let root = folder.root.path().to_string_lossy();
+    report.note(&format!("done: `{root}`. To look at it: fissure preview {}", invocation::quoted(&root)));
     Exit::Done
 }
 

@@ -117,18 +117,37 @@ fn threads_change_no_bit_and_each_coloring_and_theme_differs() {
 #[test]
 fn a_picture_of_others_is_kept_and_ours_are_replaced() {
     let folder = run();
-    preview(folder.path(), &["--output", "pictures"]);
-    preview(folder.path(), &["--output", "pictures"]);
-    for theirs in ["plate.gif", "plate_sheet.png", "plate.0002.png"] {
+    let all = ["--output", "pictures", "--html", "--pictures", "frames,sheet,gif"];
+    preview(folder.path(), &all);
+    preview(folder.path(), &all);
+    for theirs in ["plate.gif", "plate_sheet.png", "plate.0002.png", "plate.html"] {
         let path = folder.path().join("pictures").join(theirs);
         let ours = std::fs::read(&path).unwrap();
         std::fs::write(&path, "years of work").unwrap();
         let before = files(folder.path());
-        let (code, _, told) = said(folder.path(), &["preview", "out/plate", "--output", "pictures"]);
+        let (code, _, told) = said(folder.path(), &[&["preview", "out/plate"], &all[..]].concat());
         assert!(code == 3 && told.contains(theirs) && told.contains("--output"), "{code} {told}");
         assert!(files(folder.path()) == before);
         std::fs::write(&path, ours).unwrap();
     }
+}
+
+/// A page that holds all it needs: nothing in it asks for another file.
+#[test]
+fn the_page_is_one_file_and_a_run_makes_it_too() {
+    let folder = run();
+    let told = preview(folder.path(), &["--html"]);
+    assert!(told.contains("wrote a page into"), "{told}");
+    let page = std::fs::read_to_string(folder.path().join("out/plate/preview/plate.html")).unwrap();
+    for asks in ["<link", " src=", "import(", "fetch(", "XMLHttpRequest"] {
+        let own = page.replace(include_str!("../../../assets/three/three.bundle.min.js"), "");
+        assert!(!own.contains(asks), "{asks}");
+    }
+    let (code, _, told) = said(folder.path(), &["run", "plate.toml", "--output", "again", "--preview"]);
+    assert!(code == 0 && told.contains("fissure preview again"), "{told}");
+    let again = std::fs::read_to_string(folder.path().join("again/preview/plate.html")).unwrap();
+    assert!(again == page);
+    assert!(folder.path().join("again/preview/plate_sheet.png").is_file());
 }
 
 #[test]

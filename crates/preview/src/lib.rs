@@ -1,5 +1,6 @@
 //! Pictures of a take, for looking at a run without another program: a [`Picture`] per frame ([`draw_frame`]), a
-//! contact sheet of some of them ([`contact_sheet`]) and an [`Animation`].
+//! contact sheet of some of them ([`contact_sheet`]), an [`Animation`], and a [`Page`] to turn the meshes about in a
+//! browser.
 //!
 //! What is drawn are the meshes that `fissure-post` makes of a frame, seen in parallel projection, so that lengths in
 //! the plane of the drawing keep their scale ([`View`]). Over them go what meshes do not show: cracks that are closed,
@@ -23,6 +24,7 @@ mod legend;
 mod lettering;
 mod options;
 mod origin;
+mod page;
 mod picture;
 mod projection;
 mod quantity;
@@ -38,6 +40,7 @@ pub use coloring::Coloring;
 pub use draw::{Detail, draw_frame};
 pub use options::{PreviewOptions, SIZES};
 pub use origin::{Kind, is_ours};
+pub use page::{PackedFrame, Page, Series, page};
 pub use picture::{EncodeError, Picture};
 pub use projection::View;
 pub use sheet::{SHEET_FRAMES, contact_sheet, sheet_frames, tile_options};

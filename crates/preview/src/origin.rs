@@ -14,6 +14,8 @@ pub enum Kind {
     Png,
     /// An animation as GIF.
     Gif,
+    /// A page as HTML.
+    Html,
 }
 
 /// Whether the bytes of a file say that Fissure wrote it. A file that is empty or of zeros counts, which a power cut
@@ -22,6 +24,7 @@ pub fn is_ours(kind: Kind, bytes: &[u8]) -> bool {
     let says_so = match kind {
         Kind::Png => png_software(bytes).is_some_and(|software| software.starts_with(BEGINNING)),
         Kind::Gif => gif_begins_with_comment(bytes),
+        Kind::Html => html_generator(bytes),
     };
     says_so || bytes.iter().all(|&byte| byte == 0)
 }
@@ -42,4 +45,11 @@ fn gif_begins_with_comment(bytes: &[u8]) -> bool {
     let comment = rest.get(colors..).and_then(|rest| rest.strip_prefix(&[0x21, 0xfe]));
     let text = comment.and_then(|rest| rest.get(1..));
     screen.starts_with(b"GIF89a") && text.is_some_and(|text| text.starts_with(BEGINNING.as_bytes()))
+}
+
+/// Whether the first lines of a page name this program as what made it.
+fn html_generator(bytes: &[u8]) -> bool {
+    let mut lines = bytes.split(|&byte| byte == b'\n').take(8);
+    let mark = format!("<meta name=\"generator\" content=\"{BEGINNING}");
+    lines.any(|line| line.starts_with(mark.as_bytes()))
 }
