@@ -59,14 +59,9 @@ def cross(a, b):
 
 def contours(triangles):
     """The closed contours that triangles leave, each an array (n, 2), material on the left."""
-    following = {}
-    for triangle in map(tuple, triangles.reshape(-1, 6)):
-        corners = [triangle[0:2], triangle[2:4], triangle[4:6]]
-        for a, b in zip(corners, corners[1:] + corners[:1]):
-            if following.get(b) == a:
-                del following[b]
-            else:
-                following[a] = b
+    corners = [list(map(tuple, triangle)) for triangle in triangles]
+    edges = {(p[k], p[(k + 1) % 3]) for p in corners for k in range(3)}
+    following = {a: b for a, b in edges if (b, a) not in edges}
     while following:
         start = point = next(iter(following))
         contour = []
@@ -87,8 +82,12 @@ def turns(contour):
 
 def chord(contour):
     """Height of the arcs over the edges between two gentle corners, at most, and the sharpest of these corners."""
+    # Points on straight edges are no corners.
+    contour = contour[numpy.abs(turns(contour)[0]) > 0.05]
+    if len(contour) < 3:
+        return 0.0, 0.0
     turn, length = turns(contour)
-    gentle = (numpy.abs(turn) > 0.05) & (numpy.abs(turn) < SHARP)
+    gentle = numpy.abs(turn) < SHARP
     both = gentle & numpy.roll(gentle, -1)
     # The tangents of the arc over an edge turn by half the turns of both its corners.
     between = numpy.radians((turn + numpy.roll(turn, -1)) / 2)

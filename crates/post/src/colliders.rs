@@ -8,6 +8,7 @@ use crate::options::PostOptions;
 use crate::slot::Slot;
 use crate::snap::Grid;
 use crate::source::{Carried, SourceEdge};
+use crate::triangulate::{Division, triangulate};
 use fissure_scene::{Collider, ColliderShape, Frame, Point, Pose, Scene, Vector};
 
 /// Corners of the polygon that stands for a disc; off the circle by 0.03 % of the radius.
@@ -62,11 +63,12 @@ fn collider_mesh(
         crease_angle: options.crease_angle,
         texture_origin: low,
         texture_size: (high - low).amax(),
+        interior: None,
     };
     let area = 0.5 * shapes.iter().flatten().map(|c| twice_area(c)).sum::<i128>() as f64 * grid.step * grid.step;
     let content = Content::Solid { area, thickness: options.thickness };
     let mut mesh = Mesh::new(object_name(&collider.name, "collider", index), index, content);
-    shapes.iter().for_each(|shape| extrusion.solid(shape, &mut mesh));
+    shapes.iter().for_each(|shape| extrusion.solid(&triangulate(shape, Division::Plain), &mut mesh));
     Ok(mesh)
 }
 

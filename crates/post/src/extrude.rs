@@ -1,15 +1,16 @@
 //! From a polygon to a solid: two caps and the walls between them.
 
-use crate::boolean::{Edge, Shape};
+use crate::boolean::Edge;
+use crate::interior::Interior;
 use crate::mesh::{Mesh, Vertex};
 use crate::slot::Slot;
-use crate::snap::Grid;
+use crate::snap::{Grid, GridPoint};
 use crate::source::{Carried, SourceEdge};
-use crate::triangulate::triangulate;
+use crate::triangulate::Cap;
 use fissure_scene::{Point, Vector};
 
 /// How a polygon becomes a solid.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Extrusion<'a> {
     /// The grid of the polygon.
     pub(crate) grid: Grid,
@@ -23,25 +24,29 @@ pub(crate) struct Extrusion<'a> {
     pub(crate) texture_origin: Point,
     /// Length of one texture unit [m].
     pub(crate) texture_size: f64,
+    /// What the material within carries.
+    pub(crate) interior: Option<&'a Interior<'a>>,
 }
 
 impl Extrusion<'_> {
-    /// Adds caps and walls of `shape` to `mesh`.
-    pub(crate) fn solid(&self, shape: &Shape, mesh: &mut Mesh) {
-        self.caps(shape, mesh);
-        for contour in shape {
+    /// Adds the caps and walls of a polygon to `mesh`.
+    pub(crate) fn solid(&self, cap: &Cap, mesh: &mut Mesh) {
+        self.caps(cap, mesh);
+        for contour in &cap.shape {
             self.walls(contour, true, mesh);
         }
     }
 
     /// Both caps; texture coordinates from the rest position, so that textures do not swim.
-    fn caps(&self, shape: &Shape, mesh: &mut Mesh) {
-        let triangles = triangulate(shape);
+    fn caps(&self, cap: &Cap, mesh: &mut Mesh) {
+        let outer: Vec<(GridPoint, Carried)> =
+            cap.shape.iter().flatten().map(|edge| (edge.a, self.source(edge).at(edge.a))).collect();
+        let within = cap.within.iter().map(|&point| (point, self.within(point, &outer, mesh.piece)));
+        let corners: Vec<(GridPoint, Carried)> = outer.iter().copied().chain(within).collect();
         for side in [1.0, -1.0] {
             let first = mesh.vertices.len() as u32;
-            for edge in shape.iter().flatten() {
-                let carried = self.source(edge).at(edge.a);
-                let place = self.grid.place(edge.a);
+            for (point, carried) in &corners {
+                let place = self.grid.place(*point);
                 let texture = (carried.rest - self.texture_origin) / self.texture_size;
                 mesh.vertices.push(Vertex {
                     position: [place.x, place.y, 0.5 * side * self.thickness],
@@ -51,9 +56,24 @@ impl Extrusion<'_> {
                 });
             }
             let turned = |[a, b, c]: [u32; 3]| if side > 0.0 { [a, b, c] } else { [a, c, b] };
-            let cap = triangles.iter().map(|&t| turned(t).map(|i| first + i));
-            mesh.triangles[Slot::Outside as usize].extend(cap);
+            let triangles = cap.triangles.iter().map(|&t| turned(t).map(|i| first + i));
+            mesh.triangles[Slot::Outside as usize].extend(triangles);
         }
+    }
+
+    /// What the material at a corner within the polygon carries; where no particle is near, it has moved as the nearest
+    /// of the `outer` corners.
+    fn within(&self, point: GridPoint, outer: &[(GridPoint, Carried)], piece: u32) -> Carried {
+        let place = self.grid.place(point);
+        if let Some((rest, velocity)) = self.interior.and_then(|interior| interior.at(place, piece)) {
+            return Carried { rest, velocity, arc: 0.0 };
+        }
+        let distance = |p: GridPoint| ((p.x - point.x) as f64).hypot((p.y - point.y) as f64);
+        let nearest = outer.iter().min_by(|p, q| distance(p.0).total_cmp(&distance(q.0)));
+        nearest.map_or(Carried { rest: place, velocity: Vector::zeros(), arc: 0.0 }, |(corner, carried)| Carried {
+            rest: carried.rest + (place - self.grid.place(*corner)),
+            ..*carried
+        })
     }
 
     /// The walls on the edges of `contour`, which is a ring if `closed`; texture coordinates by arc length at rest.
@@ -118,7 +138,7 @@ impl Extrusion<'_> {
 /// A vertical wall edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Post {
-    point: crate::snap::GridPoint,
+    point: GridPoint,
     carried: Carried,
     normal: Vector,
 }

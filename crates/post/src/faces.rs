@@ -26,6 +26,7 @@ fn face_mesh(scene: &Scene, crack: &CrackFrame, options: &PostOptions) -> Mesh {
         crease_angle: options.crease_angle,
         texture_origin: low,
         texture_size: (high - low).amax(),
+        interior: None,
     };
     let name = object_name(&body.name, "crack", crack.crack);
     let mut mesh = Mesh::new(name, crack.crack, Content::Surface);

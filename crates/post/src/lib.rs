@@ -13,9 +13,11 @@
 //!    apart, touch and come to lie on each other as they like: each keeps its walls.
 //! 4. `slivers`: what is mere rounding goes.
 //! 5. `pinch`: contours that touch in a point are parted, so that the solid is manifold for every reader.
-//! 6. `triangulate`, `extrude`: caps and walls, with normals, texture coordinates, velocities and material slots.
-//! 7. [`Mesh::check`]: closed, manifold, oriented, volume = area × thickness, in the precision of the file.
-//! 8. `formats`: the bytes of files, one module per format; `write`, `manifest`: the files, with the feature `files`,
+//! 6. `short_edges`: edges that readers which merge by distance would close are taken out.
+//! 7. `triangulate`, `interior`, `extrude`: caps of triangles without small angles, and walls, with normals, texture
+//!    coordinates, velocities and material slots.
+//! 8. [`Mesh::check`]: closed, manifold, oriented, volume = area × thickness, in the precision of the file.
+//! 9. `formats`: the bytes of files, one module per format; `write`, `manifest`: the files, with the feature `files`,
 //!    which is on by default.
 //!
 //! Promised: every solid that is returned has passed the check, and each fragment that holds a particle is one solid in
@@ -33,6 +35,7 @@ mod extrude;
 mod faces;
 mod formats;
 mod held_open;
+mod interior;
 #[cfg(feature = "files")]
 mod manifest;
 mod mesh;
@@ -47,6 +50,7 @@ mod post;
 mod provenance;
 #[cfg(feature = "files")]
 mod record;
+mod short_edges;
 mod slivers;
 mod slot;
 mod snap;

@@ -1,7 +1,7 @@
 //! Meshes as they are written, and the check that a solid is one.
 
 use crate::slot::Slot;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// A vertex. The drawing lies in the x–y plane, y up, z towards the viewer.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -85,21 +85,22 @@ impl Mesh {
     /// The first defect found, with its place.
     pub fn check(&self) -> Result<(), MeshDefect> {
         let Content::Solid { area, thickness } = self.content else { return Ok(()) };
-        let mut corners = HashMap::new();
-        // Adding zero makes −0 and 0 the same vertex, as they are to a reader.
-        let mut corner = |i: u32| {
-            let place = rounded(self.vertices[i as usize].position).map(|x| (x + 0.0).to_bits());
-            let next = corners.len();
+        let mut corners = FxHashMap::with_capacity_and_hasher(self.vertices.len(), Default::default());
+        // The number of the place of each vertex. Adding zero makes −0 and 0 the same place, as they are to a reader.
+        let mut number = |vertex: &Vertex| {
+            let place = vertex.position.map(|x| (x as f32 + 0.0).to_bits());
+            let next = corners.len() as u32;
             *corners.entry(place).or_insert(next)
         };
-        let mut edges = HashMap::new();
+        let numbers: Vec<u32> = self.vertices.iter().map(&mut number).collect();
+        let mut edges = FxHashMap::with_capacity_and_hasher(3 * self.triangle_count(), Default::default());
         for triangle in self.all_triangles() {
             let [p, q, r] = triangle.map(|i| rounded(self.vertices[i as usize].position));
             let normal = cross(subtract(q, p), subtract(r, p));
             if dot(normal, normal) == 0.0 {
                 return Err(MeshDefect::Degenerate { place: p });
             }
-            let [a, b, c] = triangle.map(&mut corner);
+            let [a, b, c] = triangle.map(|i| numbers[i as usize]);
             for (edge, place) in [((a, b), p), ((b, c), q), ((c, a), r)] {
                 if edges.insert(edge, place).is_some() {
                     return Err(MeshDefect::NotManifold { place });

@@ -3,6 +3,10 @@
 use crate::error::PostError;
 use fissure_scene::{OutputSettings, Part, UpAxis, Walls};
 
+/// Shortest edge of contours, as a part of the body: twice the distance at which readers merge vertices, because
+/// triangles without small angles need shorter ones than their outline has.
+const SHORTEST_EDGE: f64 = 2e-4;
+
 /// How a frame becomes meshes. Made from [`OutputSettings`], then changed at will.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PostOptions {
@@ -14,6 +18,11 @@ pub struct PostOptions {
     pub smallest_fragment: f64,
     /// Which cracks inside a fragment have walls.
     pub walls: Walls,
+    /// Edges shorter than this part of the body are taken out, unless they were drawn; contours that touch in a point
+    /// are parted by a quarter of it.
+    pub shortest_edge: f64,
+    /// Length of the edges within caps, at most; none: as long as may be [m].
+    pub cap_size: Option<f64>,
     /// What to make.
     pub parts: Vec<Part>,
     /// Up axis of formats that do not fix it.
@@ -21,13 +30,15 @@ pub struct PostOptions {
 }
 
 impl From<&OutputSettings> for PostOptions {
-    /// The settings of a scene, with a crease angle of 30 degrees.
+    /// The settings of a scene, with a crease angle of 30 degrees and no edges below 2e-4 of the body.
     fn from(output: &OutputSettings) -> Self {
         Self {
             thickness: output.thickness,
             crease_angle: 30.0_f64.to_radians(),
             smallest_fragment: output.smallest_fragment,
             walls: output.walls,
+            shortest_edge: SHORTEST_EDGE,
+            cap_size: output.surfaces.cap_size,
             parts: output.parts.clone(),
             up: output.up,
         }
@@ -53,7 +64,9 @@ impl PostOptions {
             if fine { Ok(()) } else { Err(PostError::Option { name, value, range: "of at least 0" }) }
         };
         positive("thickness", self.thickness)?;
+        self.cap_size.map_or(Ok(()), |size| positive("cap_size", size))?;
         not_negative("smallest_fragment", self.smallest_fragment)?;
+        not_negative("shortest_edge", self.shortest_edge)?;
         not_negative("crease_angle", self.crease_angle)
     }
 }

@@ -15,21 +15,27 @@ use crate::source::SourceEdge;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-/// Half the diagonal of the first diamond, in grid steps. Two is the smallest that leaves room between the corners.
-const FIRST_RADIUS: i64 = 2;
-/// Rounding at the rim of a diamond can make a new pinch point; each round takes a diamond twice as wide.
-const ROUNDS: u32 = 10;
+/// Least half diagonal of a diamond, in grid steps: the smallest that leaves room between the corners.
+const LEAST_RADIUS: f64 = 2.0;
+/// Rounding at the rim of a diamond can make a new pinch point; each round takes a diamond wider by half the first.
+const ROUNDS: i64 = 10;
 
-/// Parts the contours of `shapes` at all pinch points; `sources` receives the edges of the diamonds.
+/// Parts the contours of `shapes` at all pinch points, by diamonds of half diagonal `radius`, in grid steps; `sources`
+/// receives their edges.
 ///
 /// Returns the place of a pinch point that could not be parted.
-pub(crate) fn part_pinches(mut shapes: Vec<Shape>, sources: &mut Vec<SourceEdge>) -> Result<Vec<Shape>, GridPoint> {
+pub(crate) fn part_pinches(
+    mut shapes: Vec<Shape>,
+    sources: &mut Vec<SourceEdge>,
+    radius: f64,
+) -> Result<Vec<Shape>, GridPoint> {
+    let first = radius.max(LEAST_RADIUS) as i64;
     for round in 0..ROUNDS {
         let pinches = pinch_points(&shapes);
         if pinches.is_empty() {
             return Ok(shapes);
         }
-        let radius = FIRST_RADIUS << round;
+        let radius = first + round * first / 2;
         for operation in [Operation::Cut, Operation::Fill] {
             let chosen = pinches.iter().filter(|(_, arms)| remedy(arms) == operation);
             let diamonds: Vec<Contour> = chosen.map(|(p, arms)| diamond(*p, radius, arms[0].source, sources)).collect();

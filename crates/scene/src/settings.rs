@@ -350,4 +350,14 @@ pub struct OutputSettings {
     /// Which cracks inside a fragment have walls.
     #[serde(default)]
     pub walls: Walls,
+    /// How surfaces are made.
+    #[serde(default)]
+    pub surfaces: SurfaceSettings,
+}
+
+/// How surfaces are made.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct SurfaceSettings {
+    /// Length of the edges within caps, at most; none: as long as may be [m].
+    pub cap_size: Option<f64>,
 }

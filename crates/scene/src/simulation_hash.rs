@@ -22,8 +22,9 @@ impl Scene {
         }
         scene.frames.last = scene.frames.first;
         scene.frames.playback = PLAYBACK;
-        let OutputSettings { thickness, formats, parts, up, smallest_fragment, walls } = &mut scene.output;
-        (*thickness, *smallest_fragment, *up, *walls) = (0.0, 0.0, Default::default(), Default::default());
+        let OutputSettings { thickness, formats, parts, up, smallest_fragment, walls, surfaces } = &mut scene.output;
+        (*thickness, *smallest_fragment) = (0.0, 0.0);
+        (*up, *walls, *surfaces) = Default::default();
         formats.clear();
         parts.clear();
         let mut hasher = Sha256::new();

@@ -70,6 +70,7 @@ pub(crate) fn free_body(region: Region, spacing: f64) -> Scene {
             up: UpAxis::Z,
             smallest_fragment: 0.0,
             walls: Default::default(),
+            surfaces: Default::default(),
         },
     }
 }

@@ -90,6 +90,7 @@ impl Problem {
                 up: UpAxis::Z,
                 smallest_fragment: 0.0,
                 walls: Default::default(),
+                surfaces: Default::default(),
             },
         };
         Self { scene }

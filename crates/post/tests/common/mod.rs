@@ -72,6 +72,7 @@ pub fn scene(region: Region) -> Scene {
             up: UpAxis::Z,
             smallest_fragment: 0.0,
             walls: Default::default(),
+            surfaces: Default::default(),
         },
     }
 }
@@ -218,6 +219,10 @@ pub fn halves(size: f64, motions: [(f64, Vector); 2]) -> (Scene, Frame) {
             }
         }
     }
-    frame.particles = particles(&region, |x| (u32::from(x.x > middle), moved(x.x > middle, x)));
+    let mut particles = particles(&region, |x| (u32::from(x.x > middle), moved(x.x > middle, x)));
+    for (rest, gradient) in particles.rest.iter().zip(&mut particles.deformation_gradient) {
+        *gradient = nalgebra::Rotation2::new(motions[usize::from(rest.x > middle)].0).into_inner();
+    }
+    frame.particles = particles;
     (scene(region), frame)
 }

@@ -212,6 +212,9 @@ pub struct OutputKeys {
     pub smallest_fragment: f64,
     /// Cracks inside a fragment with walls: `open` (default), or `all`, closed ones too.
     pub walls: Walls,
+    /// Longest edges of triangles within the caps in m, for displacement and bending. Default: as long as may be.
+    #[schemars(transform = LENGTH.bounds())]
+    pub cap_size: Option<f64>,
 }
 
 impl Default for OutputKeys {
@@ -223,6 +226,7 @@ impl Default for OutputKeys {
             up: UpAxis::default(),
             smallest_fragment: 0.0,
             walls: Walls::default(),
+            cap_size: None,
         }
     }
 }

@@ -18,6 +18,11 @@ const MOST_ALONG_THE_SCENE: f64 = 1e9;
 /// Steps of single precision that a particle spacing must have: with fewer, the rounding of a mesh would be seen.
 const LEAST_STEPS_PER_SPACING: f64 = 16.0;
 
+/// Most triangles of a cap of given size.
+const MOST_CAP_TRIANGLES: f64 = 4e6;
+/// Area of an equilateral triangle, over the square of its side.
+const EQUILATERAL: f64 = 0.433;
+
 impl Scene {
     pub(super) fn validate_resolution(&self) -> Check {
         let path = KeyPath::setting("grid", "particle_spacing");
@@ -159,7 +164,22 @@ impl Scene {
             validate_branching(&growth("branching"), branching)?;
         }
         LENGTH.check(KeyPath::setting("output", "thickness"), "the thickness", o.thickness)?;
-        AREA.check(KeyPath::setting("output", "smallest_fragment"), "the smallest fragment", o.smallest_fragment)
+        AREA.check(KeyPath::setting("output", "smallest_fragment"), "the smallest fragment", o.smallest_fragment)?;
+        o.surfaces.cap_size.map_or(Ok(()), |size| self.validate_cap_size(size))
+    }
+
+    /// Caps of more triangles than anybody opens are a slip of the pen.
+    fn validate_cap_size(&self, size: f64) -> Check {
+        let path = || KeyPath::setting("output", "cap_size");
+        LENGTH.check(path(), "`cap_size`", size)?;
+        let area: f64 = self.bodies.iter().map(|body| body.region.area()).sum();
+        if area <= MOST_CAP_TRIANGLES * EQUILATERAL * size * size {
+            return Ok(());
+        }
+        let message =
+            format!("caps with edges of {size} m would have {:.1e} triangles", area / (EQUILATERAL * size * size));
+        let least = (area / (MOST_CAP_TRIANGLES * EQUILATERAL)).sqrt();
+        Err(SceneFault::new(path(), message, format!("make `cap_size` at least {least:.2e}")))
     }
 }
 

@@ -1,0 +1,167 @@
+//! Edges so short that readers that merge vertices by distance would close them.
+
+use crate::boolean::{Contour, Edge, Shape, SourceIndex};
+use crate::snap::GridPoint;
+use crate::source::{Carried, SourceEdge};
+
+/// Takes edges shorter than `least` grid steps out of the contours of `shapes`, one of their ends each: the one without
+/// which the area changes less; and contours that have no longer ones. `sources` receives the edges that take their
+/// place. Edges that `is_drawn` stay, and so do those that are needed to keep contours apart.
+pub(crate) fn without_short_edges(
+    shapes: &mut Vec<Shape>,
+    least: f64,
+    sources: &mut Vec<SourceEdge>,
+    is_drawn: impl Fn(&Edge, &SourceEdge) -> bool,
+) {
+    let is_short =
+        |edge: &Edge, sources: &[SourceEdge]| length(edge) < least && !is_drawn(edge, &sources[edge.source.0 as usize]);
+    for shape in shapes.iter_mut() {
+        let outer = shape.first().is_some_and(|outer| outer.iter().all(|edge| is_short(edge, sources)));
+        shape.retain(|contour| !outer && !contour.iter().all(|edge| is_short(edge, sources)));
+        for index in 0..shape.len() {
+            let mut begin = 0;
+            while let Some(found) = (begin..shape[index].len()).find(|&i| is_short(&shape[index][i], sources)) {
+                match without(shape, index, found) {
+                    Some(first) => {
+                        merge(&mut shape[index], first, sources);
+                        begin = found.saturating_sub(2);
+                    }
+                    None => begin = found + 1,
+                }
+            }
+        }
+    }
+    shapes.retain(|shape| !shape.is_empty());
+}
+
+/// The first of the two edges that one may take the place of, so that edge `found` of a contour is gone; none if the
+/// contour would then touch another one or have no area.
+fn without(shape: &Shape, index: usize, found: usize) -> Option<usize> {
+    let contour = &shape[index];
+    let count = contour.len();
+    let mut ways = [(found + count - 1) % count, found];
+    if turned(contour, ways[0]).unsigned_abs() > turned(contour, ways[1]).unsigned_abs() {
+        ways.swap(0, 1);
+    }
+    ways.into_iter().find(|&first| count > 3 && is_free(shape, index, first))
+}
+
+fn length(edge: &Edge) -> f64 {
+    ((edge.b.x - edge.a.x) as f64).hypot((edge.b.y - edge.a.y) as f64)
+}
+
+/// Twice the area of the triangle of an edge and the one after it.
+fn turned(contour: &Contour, first: usize) -> i128 {
+    let second = &contour[(first + 1) % contour.len()];
+    side(contour[first].a, contour[first].b, second.b)
+}
+
+/// Twice the area of the triangle, positive if counter-clockwise.
+fn side(a: GridPoint, b: GridPoint, c: GridPoint) -> i128 {
+    i128::from(b.x - a.x) * i128::from(c.y - a.y) - i128::from(b.y - a.y) * i128::from(c.x - a.x)
+}
+
+/// Whether no corner lies in or on the triangle between an edge with the one after it and the edge that replaces both.
+fn is_free(shape: &Shape, index: usize, first: usize) -> bool {
+    let contour = &shape[index];
+    let second = contour[(first + 1) % contour.len()];
+    let (a, b, c) = (contour[first].a, second.a, second.b);
+    let is_outside = |p: GridPoint| {
+        let sides = [side(a, b, p), side(b, c, p), side(c, a, p)];
+        p == a || p == b || p == c || (sides.iter().any(|s| *s > 0) && sides.iter().any(|s| *s < 0))
+    };
+    a != c && shape.iter().flatten().all(|edge| is_outside(edge.a))
+}
+
+/// Puts one edge in the place of edge `first` and the one after it. It carries on both sides what they carry there, and
+/// is a wall of the kind of the longer one.
+fn merge(contour: &mut Contour, first: usize, sources: &mut Vec<SourceEdge>) {
+    let second = (first + 1) % contour.len();
+    let (one, two) = (contour[first], contour[second]);
+    let (source_one, source_two) = (sources[one.source.0 as usize], sources[two.source.0 as usize]);
+    let (mut start, mut end) = (source_one.at(one.a), source_two.at(two.b));
+    let longer = if length(&one) < length(&two) { source_two } else { source_one };
+    if source_one.slot != source_two.slot || source_one.at(one.b).arc != source_two.at(two.a).arc {
+        // Lengths along two lines have nothing to do with each other.
+        let arc = |carried: Carried, point| Carried { arc: longer.at(point).arc, ..carried };
+        (start, end) = (arc(start, one.a), arc(end, two.b));
+    }
+    let source = SourceIndex(sources.len() as u32);
+    sources.push(SourceEdge { a: one.a, b: two.b, carried: [start, end], slot: longer.slot });
+    contour[first] = Edge { a: one.a, b: two.b, source };
+    contour.remove(second);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::boolean::{material, twice_area};
+    use crate::slot::Slot;
+    use fissure_scene::{Point, Vector};
+    use proptest::prelude::*;
+
+    /// The boundary of rings, as sources that carry nothing.
+    fn sources(rings: &[Vec<(i64, i64)>]) -> Vec<SourceEdge> {
+        let carried = [Carried { rest: Point::origin(), velocity: Vector::zeros(), arc: 0.0 }; 2];
+        let edges = rings.iter().flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)));
+        let point = |&(x, y): &(i64, i64)| GridPoint::new(x, y);
+        edges.map(|(a, b)| SourceEdge { a: point(a), b: point(b), carried, slot: Slot::Inside }).collect()
+    }
+
+    fn area(shapes: &[Shape]) -> f64 {
+        0.5 * shapes.iter().flatten().map(|contour| twice_area(contour)).sum::<i128>() as f64
+    }
+
+    proptest! {
+        /// Truth: by hand. A square with many corners in its sides, some beside the straight line, and a hole: what is
+        /// left has no short edge, is closed, and differs by no more than the strips beside the short edges.
+        #[test]
+        fn short_edges_go_and_the_area_stays(
+            steps in proptest::collection::vec((1_i64..400, -3_i64..4), 40),
+            hole in 3_i64..2000,
+        ) {
+            let mut ring = vec![(0, 0)];
+            let mut x = 0;
+            for (step, off) in steps {
+                x += step;
+                ring.push((x, off));
+            }
+            let side = x + 6000;
+            ring.extend([(side, 0), (side, side), (0, side)]);
+            let inner = vec![(500, 3000), (500, 3000 + hole), (500 + hole, 3000 + hole), (500 + hole, 3000)];
+            let mut sources = sources(&[ring, inner]);
+            let mut shapes = material(&sources);
+            let before = area(&shapes);
+            without_short_edges(&mut shapes, 100.0, &mut sources, |_, _| false);
+            prop_assert_eq!(shapes.len(), 1);
+            let holes = shapes[0].len() - 1;
+            prop_assert_eq!(holes, usize::from(hole >= 100));
+            for contour in &shapes[0] {
+                for (edge, next) in contour.iter().zip(contour.iter().cycle().skip(1)) {
+                    prop_assert_eq!(edge.b, next.a);
+                    prop_assert!(length(edge) >= 100.0);
+                    let source = &sources[edge.source.0 as usize];
+                    prop_assert!(source.at(edge.a) == source.carried[0] && source.at(edge.b) == source.carried[1]);
+                }
+            }
+            let filled = if holes == 0 { (hole * hole) as f64 } else { 0.0 };
+            // The short ones lie along one side and around its ends.
+            prop_assert!((area(&shapes) - before - filled).abs() <= 40.0 * 100.0 * 7.0 + 100.0 * side as f64);
+        }
+    }
+
+    /// Truth: by hand. An edge whose ends cannot go without crossing the hole beside it stays.
+    #[test]
+    fn contours_do_not_come_to_touch() {
+        let outer = vec![(0, 0), (9000, 0), (9000, 9000), (4550, 4000), (4450, 4000), (0, 9000)];
+        // The tip of the hole lies in both triangles that could go.
+        let hole = vec![(4500, 3000), (4400, 3000), (4499, 3999)];
+        let mut sources = sources(&[outer, hole]);
+        let mut shapes = material(&sources);
+        let before = area(&shapes);
+        without_short_edges(&mut shapes, 101.0, &mut sources, |edge, _| edge.a.y < 3999 && edge.a.x > 0);
+        let contours = shapes[0].len();
+        assert_eq!((contours, shapes.len()), (2, 1));
+        assert!(area(&shapes) >= before - 1.0);
+    }
+}
