@@ -168,8 +168,8 @@ pub(crate) struct TakeArguments {
 /// What meshes to write.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct MeshArguments {
-    /// File formats: glb, ply, obj, usda, vtk, svg [default: as in the scene].
-    #[arg(long, value_name = "FORMAT,..", value_delimiter = ',', value_parser = words::<Format>(&["glb", "ply", "obj", "usda", "vtk", "svg"]), hide_possible_values = true)]
+    /// File formats: glb, ply, obj, usda, vtk, svg, glb_sequence, glb_rigid [default: as in the scene].
+    #[arg(long, value_name = "FORMAT,..", value_delimiter = ',', value_parser = words::<Format>(&["glb", "ply", "obj", "usda", "vtk", "svg", "glb_sequence", "glb_rigid"]), hide_possible_values = true)]
     pub(crate) formats: Vec<Format>,
     /// Parts of the scene: cracked, body, faces, collider, particles [default: as in the scene].
     #[arg(long, value_name = "PART,..", value_delimiter = ',', value_parser = words::<Part>(&["cracked", "body", "faces", "collider", "particles"]), hide_possible_values = true)]

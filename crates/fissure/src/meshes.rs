@@ -3,14 +3,15 @@
 use crate::args::MeshArguments;
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::interrupt::Interrupt;
 use crate::report::Report;
 use crate::workers::contain;
 use fissure_files::Folder;
 use fissure_post::{
-    Manifest, PostError, PostOptions, Provenance, WriteError, post_frame, write_companions, write_frame,
+    Manifest, PostError, PostOptions, Provenance, Sequences, WriteError, post_frame, write_companions, write_frame,
 };
-use fissure_scene::{Format, Frame, Scene};
-use std::sync::{Mutex, PoisonError};
+use fissure_scene::{Format, Frame, Scene, Take};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// That each format shows something of the parts, in what is meant to be written.
 ///
@@ -84,7 +85,7 @@ impl<'a> Mesher<'a> {
             let records = write_frame(&self.folder, self.scene, &frame, &meshes, &self.formats)?;
             Ok((records, meshes.provenance))
         });
-        let mut outcome = self.outcome.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut outcome = self.outcome();
         match made {
             Ok((records, provenance)) => {
                 outcome.manifest.add(records);
@@ -96,6 +97,35 @@ impl<'a> Mesher<'a> {
                 self.report.error(&failure.during(format!("no mesh of frame {number}")));
             }
         }
+    }
+
+    /// Makes the files of the whole sequence: of the frames `numbers` of `take`, which rise. Nothing is written when
+    /// the user asks to stop or a frame fails: a file of an earlier run stays as it is until the new one is whole.
+    pub(crate) fn make_sequences(&self, take: &Take, numbers: &[i64], interrupt: &Interrupt) {
+        let mut sequences = Sequences::new(self.scene, &self.options.parts, &self.formats);
+        if sequences.is_empty() {
+            return;
+        }
+        let made = contain(|| {
+            for &number in numbers {
+                if interrupt.is_set() {
+                    return Ok(());
+                }
+                let frame = take.frame(number)?;
+                let meshes = post_frame(self.scene, &frame, &self.options)?;
+                sequences.add(&frame, &meshes)?;
+                self.outcome().provenance = Some(meshes.provenance);
+            }
+            Ok(sequences.write(&self.folder, &mut self.outcome().manifest)?)
+        });
+        if let Err(failure) = made {
+            self.outcome().worst.get_or_insert(failure.exit);
+            self.report.error(&failure.during("no file of the whole sequence".to_owned()));
+        }
+    }
+
+    fn outcome(&self) -> MutexGuard<'_, Outcome> {
+        self.outcome.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Writes the list of all meshes.
@@ -110,6 +140,10 @@ impl<'a> Mesher<'a> {
         }
         let Some(exit) = outcome.worst else { return Ok(()) };
         let mut frames = outcome.failed;
+        if frames.is_empty() {
+            let remedy = "the files of its frames are there: when the reason above is gone, run `fissure post`";
+            return Err(Failure::new(exit, "the file of the whole sequence is missing", remedy));
+        }
         frames.sort_unstable();
         let list: Vec<_> = frames.iter().take(10).map(i64::to_string).collect();
         let more = if frames.len() > list.len() { ", ..." } else { "" };

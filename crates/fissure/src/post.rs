@@ -43,6 +43,7 @@ pub(crate) fn post(arguments: &PostArguments, interrupt: &Interrupt, report: &Re
     interrupt.finish_cleanly();
     stream(threads, numbers.iter().copied(), &work, |_| ())?;
     drop(progress);
+    mesher.make_sequences(&take, &numbers, interrupt);
     mesher.finish()?;
     if interrupt.is_set() {
         report.note("interrupted; run the same command again");

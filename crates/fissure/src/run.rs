@@ -49,6 +49,11 @@ pub(crate) fn run(arguments: &RunArguments, interrupt: &Interrupt, report: &Repo
         }),
         None => Ok(Outcome::Complete),
     })?;
+    if matches!(outcome, Ok(Outcome::Complete)) {
+        let take = Take::read(&folder.take)?;
+        let numbers: Vec<i64> = take.frame_numbers().into_iter().filter(|&number| wanted(number)).collect();
+        mesher.make_sequences(&take, &numbers, interrupt);
+    }
     // The solver's failure says more than those of the meshes, which have been reported one by one.
     let meshes = mesher.finish();
     let outcome = outcome?;

@@ -214,7 +214,11 @@ fn shells_read_their_completions() {
     // What bash offers after a word, asked as bash asks.
     let ask = "source ./bash; COMP_WORDS=(fissure run --formats ''); COMP_CWORD=3; _fissure fissure '' --formats; echo ${COMPREPLY[*]}";
     let output = Command::new("bash").args(["-c", ask]).current_dir(folder.path()).output().unwrap();
-    assert_eq!(String::from_utf8_lossy(&output.stdout).trim(), "glb ply obj usda vtk svg", "{output:?}");
+    assert_eq!(
+        String::from_utf8_lossy(&output.stdout).trim(),
+        "glb ply obj usda vtk svg glb_sequence glb_rigid",
+        "{output:?}"
+    );
     assert!(expect(&run(folder.path(), &["completions", "cmd"]), 2).contains("powershell"));
 }
 

@@ -50,6 +50,9 @@ mod post;
 mod provenance;
 #[cfg(feature = "files")]
 mod record;
+mod rigid;
+#[cfg(feature = "files")]
+mod sequences;
 mod short_edges;
 mod slivers;
 mod slot;
@@ -62,7 +65,7 @@ mod write;
 mod write_error;
 
 pub use error::PostError;
-pub use formats::{FormatError, Shot, encode};
+pub use formats::{FormatError, Sequence, Shot, encode, sequence};
 #[cfg(feature = "files")]
 pub use manifest::Manifest;
 pub use mesh::{Content, Mesh, MeshDefect, Vertex};
@@ -71,6 +74,8 @@ pub use post::{FrameMeshes, post_frame};
 pub use provenance::Provenance;
 #[cfg(feature = "files")]
 pub use record::{FileRecord, ObjectRecord, SequenceRecord, file_name};
+#[cfg(feature = "files")]
+pub use sequences::Sequences;
 pub use slot::Slot;
 #[cfg(feature = "files")]
 pub use write::{write_companions, write_frame};

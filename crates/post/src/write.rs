@@ -1,6 +1,6 @@
 //! Mesh files of a sequence.
 
-use crate::formats::{Listing, Shot, encode, file_format, is_ours, sequence_name};
+use crate::formats::{Listing, Shot, encode, file_format, is_ours, sequence, sequence_name};
 use crate::manifest::Manifest;
 use crate::mesh::{Content, Mesh};
 use crate::post::FrameMeshes;
@@ -11,7 +11,8 @@ use fissure_files::Folder;
 use fissure_scene::{Format, Frame, Scene};
 use std::path::PathBuf;
 
-/// Writes the meshes of `frame` into `folder`, which must exist, one file per part and format that shows it:
+/// Writes the meshes of `frame` into `folder`, which must exist, one file per part and format that shows
+/// it and has files of frames:
 /// `pull.0001.glb` for the cracked body of the scene `pull`, `pull_particles.0001.glb` and so on for other parts, so
 /// that each part is a sequence of its own. A part with nothing in it gives a valid file with nothing in it: no
 /// sequence has gaps.
@@ -28,7 +29,8 @@ pub fn write_frame(
 ) -> Result<Vec<FileRecord>, WriteError> {
     let mut records = Vec::with_capacity(formats.len() * meshes.parts.len());
     for shot in meshes.shots(scene, frame) {
-        for &format in formats.iter().filter(|format| format.shows(shot.part)) {
+        let own = |format: &&Format| format.shows(shot.part) && sequence(**format).is_none();
+        for &format in formats.iter().filter(own) {
             let file = file_name(&scene.name, shot.part, meshes.provenance.frame, format);
             let path = folder.place(&file)?;
             let bytes = encode(format, &shot).map_err(|cause| WriteError::Format { file: file.clone(), cause })?;
@@ -61,7 +63,7 @@ pub fn write_companions(folder: &Folder, scene: &Scene, tool: &str, manifest: &m
 }
 
 /// Writes a file, unless there is one that is not ours.
-fn write(folder: &Folder, file: &str, format: Format, bytes: &[u8]) -> Result<(), WriteError> {
+pub(crate) fn write(folder: &Folder, file: &str, format: Format, bytes: &[u8]) -> Result<(), WriteError> {
     if folder.read(file)?.is_some_and(|there| !is_ours(format, &there)) {
         return Err(WriteError::Foreign { path: folder.place(file)? });
     }

@@ -5,7 +5,9 @@ mod common;
 
 use common::{halves, options};
 use fissure_files::Folder;
-use fissure_post::{FileRecord, FrameMeshes, Manifest, WriteError, post_frame, write_companions, write_frame};
+use fissure_post::{
+    FileRecord, FrameMeshes, Manifest, Sequences, WriteError, post_frame, write_companions, write_frame,
+};
 use fissure_scene::{Format, Frame, Part, Scene, UpAxis, Vector};
 use ply_rs_bw::parser::Parser;
 use ply_rs_bw::ply::{DefaultElement, Property};
@@ -236,6 +238,12 @@ fn every_format_knows_its_own_files() {
             manifest.add(sample.write(&inside, &Format::ALL)?);
         }
         write_companions(&inside, &samples[0].scene, &samples[0].meshes.provenance.tool, &mut manifest)?;
+        let scene = &samples[0].scene;
+        let mut sequences = Sequences::new(scene, &[Part::Cracked, Part::Particles], &Format::ALL);
+        for sample in &samples {
+            sequences.add(&sample.frame, &sample.meshes)?;
+        }
+        sequences.write(&inside, &mut manifest)?;
         manifest.write(&inside, &samples[0].meshes.provenance)
     };
     write().unwrap();
@@ -244,7 +252,15 @@ fn every_format_knows_its_own_files() {
     // Three parts in two frames; the SVG shows one of them.
     let frames = |extension: &str| names.iter().filter(|name| name.ends_with(&format!("1.{extension}"))).count();
     assert_eq!(["glb", "ply", "obj", "usda", "vtp", "vtu", "svg"].map(frames), [3, 3, 3, 3, 2, 1, 1]);
-    for name in ["glass.usda", "glass.clips.usda", "glass_particles.pvd", "glass.mtl", "glass_collider.usda"] {
+    for name in [
+        "glass.usda",
+        "glass.clips.usda",
+        "glass_particles.pvd",
+        "glass.mtl",
+        "glass_collider.usda",
+        "glass_particles.glb",
+        "glass.rigid.glb",
+    ] {
         assert!(names.iter().any(|n| n == name), "{name} among {names:?}");
     }
     for name in names.iter().filter(|name| *name != "manifest.json") {

@@ -283,11 +283,16 @@ pub enum Format {
     Vtk,
     /// The drawing plane as SVG, in mm: fragments, cracks and tips (part `cracked`).
     Svg,
+    /// Binary glTF 2.0 of the whole sequence: each frame is there in its time.
+    GlbSequence,
+    /// Binary glTF 2.0 of the whole sequence: fragments that move as rigid bodies are nodes that move (part `cracked`).
+    GlbRigid,
 }
 
 impl Format {
     /// All of them.
-    pub const ALL: [Self; 6] = [Self::Glb, Self::Ply, Self::Obj, Self::Usda, Self::Vtk, Self::Svg];
+    pub const ALL: [Self; 8] =
+        [Self::Glb, Self::Ply, Self::Obj, Self::Usda, Self::Vtk, Self::Svg, Self::GlbSequence, Self::GlbRigid];
 
     /// Its name in scene files.
     pub fn name(self) -> &'static str {
@@ -298,14 +303,16 @@ impl Format {
             Self::Usda => "usda",
             Self::Vtk => "vtk",
             Self::Svg => "svg",
+            Self::GlbSequence => "glb_sequence",
+            Self::GlbRigid => "glb_rigid",
         }
     }
 
     /// Whether files of this format show `part`.
     pub fn shows(self, part: Part) -> bool {
         match self {
-            Self::Glb | Self::Ply | Self::Obj | Self::Usda | Self::Vtk => true,
-            Self::Svg => part == Part::Cracked,
+            Self::Glb | Self::Ply | Self::Obj | Self::Usda | Self::Vtk | Self::GlbSequence => true,
+            Self::Svg | Self::GlbRigid => part == Part::Cracked,
         }
     }
 }

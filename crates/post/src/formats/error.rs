@@ -7,6 +7,9 @@ pub enum FormatError {
     /// Binary glTF counts bytes in 32 bits.
     #[error("the file would take {0} bytes, more than the 4 GiB a GLB file can hold; write PLY or fewer particles")]
     TooLarge(usize),
+    /// A file of a whole sequence without any frame.
+    #[error("there are no frames to make a sequence of")]
+    NoFrames,
     /// The document could not be written as JSON.
     #[error("the glTF document cannot be written as JSON: {0}")]
     Json(#[from] gltf::json::Error),
@@ -22,7 +25,8 @@ impl FormatError {
     /// What the user can do about it.
     pub fn remedy(&self) -> &'static str {
         match self {
-            Self::TooLarge(_) => "write PLY, or use a larger `grid.particle_spacing`",
+            Self::TooLarge(_) => "write PLY or fewer `--frames`, or use a larger `grid.particle_spacing`",
+            Self::NoFrames => "ask for frames that the take has",
             Self::Json(_) | Self::Container(_) | Self::Writer(_) => "please report it with the scene file",
         }
     }

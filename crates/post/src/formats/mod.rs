@@ -2,12 +2,17 @@
 
 mod error;
 mod glb;
+mod glb_rigid;
+mod glb_sequence;
+mod gltf_animation;
+mod gltf_document;
 mod numbers;
 mod obj;
 #[cfg(feature = "files")]
 mod origin;
 mod palette;
 mod ply;
+mod sequence_file;
 mod svg;
 mod usda;
 mod vtk;
@@ -15,6 +20,7 @@ mod vtk;
 pub use error::FormatError;
 #[cfg(feature = "files")]
 pub(crate) use origin::{TOOL, is_ours};
+pub use sequence_file::Sequence;
 
 use crate::mesh::Mesh;
 use crate::packed::Convention;
@@ -39,12 +45,17 @@ pub struct Shot<'a> {
 }
 
 /// The bytes of the file of one part of one frame. A part without objects gives a valid file without objects: no
-/// sequence has gaps.
+/// sequence has gaps. Of a format that makes one file of a whole sequence it is one of a single frame.
 ///
 /// # Errors
 /// When the format cannot hold it.
 pub fn encode(format: Format, shot: &Shot<'_>) -> Result<Vec<u8>, FormatError> {
     file_format(format).frame(shot)
+}
+
+/// A file of the whole sequence of a part in the making; none for formats that have a file per frame.
+pub fn sequence(format: Format) -> Option<Box<dyn Sequence>> {
+    file_format(format).sequence()
 }
 
 impl Shot<'_> {
@@ -77,6 +88,11 @@ pub(crate) trait FileFormat: Sync {
     /// See [`encode`].
     fn frame(&self, shot: &Shot<'_>) -> Result<Vec<u8>, FormatError>;
 
+    /// A file of the whole sequence to be made; none for formats that have a file per frame.
+    fn sequence(&self) -> Option<Box<dyn Sequence>> {
+        None
+    }
+
     /// Files about the whole sequence that go with those of its frames, name and bytes: what they all refer to, or what
     /// plays them.
     #[cfg(feature = "files")]
@@ -99,6 +115,8 @@ pub(crate) fn file_format(format: Format) -> &'static dyn FileFormat {
         Format::Usda => &usda::UsdText,
         Format::Vtk => &vtk::VtkXml,
         Format::Svg => &svg::Drawing,
+        Format::GlbSequence => &glb_sequence::GltfSequence,
+        Format::GlbRigid => &glb_rigid::RigidGltf,
     }
 }
 

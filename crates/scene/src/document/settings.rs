@@ -201,7 +201,7 @@ pub struct OutputKeys {
     /// Thickness of the solids in m. Default: a tenth of the larger side of the bodies' bounding box.
     #[schemars(transform = LENGTH.bounds())]
     pub thickness: Option<f64>,
-    /// File formats: `glb`, `ply`, `obj`, `usda`, `vtk`, `svg`. Default: `glb` and `ply`.
+    /// File formats: `glb`, `ply`, `obj`, `usda`, `vtk`, `svg`, `glb_sequence`, `glb_rigid`. Default: `glb` and `ply`.
     pub formats: Vec<Format>,
     /// What to write: `cracked` (default), `body`, `faces`, `collider`, `particles`.
     pub parts: Vec<Part>,
