@@ -157,6 +157,9 @@ pub(crate) struct TakeArguments {
     /// Folder to write into [default: out/NAME, NAME being the scene's name].
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) output: Option<PathBuf>,
+    /// Also write what is measured at the tips at every look, between frames too: NAME.looks.csv.
+    #[arg(long)]
+    pub(crate) looks: bool,
     /// Start afresh: remove the take and the meshes of this scene's name that are in the output folder.
     #[arg(long)]
     pub(crate) overwrite: bool,

@@ -13,6 +13,7 @@ mod folder;
 mod frame_set;
 mod interrupt;
 mod invocation;
+mod looks;
 mod man;
 mod meshes;
 mod moved;

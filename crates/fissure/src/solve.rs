@@ -7,6 +7,7 @@ use crate::folder::OutputFolder;
 use crate::frame_set::FrameSet;
 use crate::interrupt::Interrupt;
 use crate::invocation;
+use crate::looks::Looks;
 use crate::moved::Moved;
 use crate::progress::SimulationProgress;
 use crate::report::Report;
@@ -41,6 +42,8 @@ pub(crate) struct Solve {
     last: i64,
     /// Whether that frame is not in the take yet: nobody has seen it.
     fresh: bool,
+    /// The table of looks, where it is wanted.
+    looks: Option<Looks>,
     /// No other process writes to the take as long as this lives.
     _lock: Lock,
 }
@@ -74,7 +77,8 @@ pub(crate) fn open(
     let take = folder.take.path().display();
     let solve = |simulation: Simulation, writer, fresh| {
         let newest = simulation.frame_number();
-        Ok(Some(Solve { simulation, writer, newest, last, fresh, _lock: lock }))
+        let looks = arguments.looks.then(|| Looks::open(&folder.root, &scene.name, newest, simulation.time()));
+        Ok(Some(Solve { simulation, writer, newest, last, fresh, looks: looks.transpose()?, _lock: lock }))
     };
     match start {
         Start::Complete => {
@@ -155,11 +159,15 @@ impl Solve {
         let mut formulation = self.simulation.formulation();
         let mut moved = Moved::default();
         while self.newest < self.last {
-            let mut watch = |now: &fissure_sim::Progress| {
-                progress.step(self.newest + 1, now);
+            let (next, looks) = (self.newest + 1, &mut self.looks);
+            let mut watch = |simulation: &Simulation, now: &fissure_sim::Progress| {
+                progress.step(next, now);
+                if let Some(looks) = looks {
+                    looks.step(simulation, next);
+                }
                 if interrupt.is_set() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             };
-            let goes_on = if interrupt.is_set() { Ok(false) } else { self.simulation.advance(&mut watch) };
+            let goes_on = if interrupt.is_set() { Ok(false) } else { self.simulation.advance_observed(&mut watch) };
             if !matches!(goes_on, Ok(true)) {
                 // After a failure too: the same command then fails again at once instead of after the whole way.
                 self.writer.write_state(&state, self.newest)?;
@@ -179,6 +187,9 @@ impl Solve {
             self.writer.write_frame(&frame, due.then_some(state.as_slice()))?;
             if due {
                 state_written = Instant::now();
+            }
+            if let Some(looks) = &mut self.looks {
+                looks.frame()?;
             }
             self.newest = frame.number;
             progress.frame(frame.number, &frame.tips);

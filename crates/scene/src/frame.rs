@@ -153,6 +153,18 @@ impl TipState {
     pub fn is_live(self) -> bool {
         matches!(self, Self::Resting | Self::Growing | Self::Arrested)
     }
+
+    /// Its word in tables.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Resting => "resting",
+            Self::Growing => "growing",
+            Self::Arrested => "arrested",
+            Self::LeftBody => "left_body",
+            Self::MetCrack => "met_crack",
+            Self::GuideEnded => "guide_ended",
+        }
+    }
 }
 
 /// What was measured at a crack tip at one moment.

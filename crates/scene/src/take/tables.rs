@@ -3,7 +3,7 @@
 
 use super::list::{FileEntry, FrameEntry};
 use super::{TakeError, frame_file};
-use crate::frame::{End, Frame, TipState};
+use crate::frame::{End, Frame};
 use fissure_files::Folder;
 use std::fmt::Write as _;
 
@@ -100,8 +100,7 @@ fn tip_rows(frame: &Frame) -> String {
     let mut rows = String::new();
     for t in &frame.tips {
         // Writing to a string cannot fail.
-        let _ =
-            write!(rows, "{},{:e},{},{},{}", frame.number, frame.time, t.crack, end_word(t.end), state_word(t.state));
+        let _ = write!(rows, "{},{:e},{},{},{}", frame.number, frame.time, t.crack, end_word(t.end), t.state.word());
         let numbers = [
             t.position.x,
             t.position.y,
@@ -143,16 +142,5 @@ fn end_word(end: End) -> &'static str {
     match end {
         End::Start => "start",
         End::End => "end",
-    }
-}
-
-fn state_word(state: TipState) -> &'static str {
-    match state {
-        TipState::Resting => "resting",
-        TipState::Growing => "growing",
-        TipState::Arrested => "arrested",
-        TipState::LeftBody => "left_body",
-        TipState::MetCrack => "met_crack",
-        TipState::GuideEnded => "guide_ended",
     }
 }

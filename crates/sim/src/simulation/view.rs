@@ -3,6 +3,7 @@
 use super::{Counts, Simulation};
 use crate::boundary::collider::Obstacle;
 use crate::boundary::supports::Reaction;
+use crate::material::elastic::Elastic;
 use crate::solver::Observed;
 use fissure_scene::{Energies, Formulation, Frame, Pose, Scene, SupportRecord, TipRecord, Vector};
 
@@ -58,6 +59,14 @@ impl Simulation {
             tips.extend(cracks.of(id).record(id, position, direction, self.state.interval));
         }
         tips
+    }
+
+    /// Elastic constants at a tip that [`Simulation::tips`] tells of; none: there is no such crack.
+    pub fn elastic_at(&self, tip: &TipRecord) -> Option<&Elastic> {
+        let id = self.state.cracks.ids().find(|id| id.crack == tip.crack as usize && id.end == tip.end)?;
+        let cracks = &self.state.cracks;
+        let body = self.scene.bodies.get(cracks.of(id).body as usize)?;
+        self.elastic.get(body.material_at(cracks.position(id)))
     }
 
     /// Energy budget now, as in a frame.

@@ -42,6 +42,20 @@ impl StressIntensity {
         let part = |a: f64, k: f64| if k == 0.0 { 0.0 } else { a * k * k };
         (part(a_1, self.mode_1) + part(a_2, self.mode_2)) / elastic.effective_modulus
     }
+
+    /// Stress intensities of a tip that moves at `speed` [m/s] and releases J [J/m²], with the ratio of modes of
+    /// `self`: K_II/K_I = ρ and K_I = √(E'J/(A_I + A_II ρ²)). Zero where nothing is released, and from c_R on.
+    ///
+    /// Integrals that hold a tip at rest against its fields say too much of one that moves.
+    pub fn of_moving_tip(&self, j_integral: f64, elastic: &Elastic, speed: f64) -> Self {
+        let released = self.moving_energy_release_rate(elastic, speed);
+        // NaN is nothing known.
+        if !(j_integral > 0.0 && released > 0.0) {
+            return Self::default();
+        }
+        let factor = (j_integral / released).sqrt();
+        Self { mode_1: factor * self.mode_1, mode_2: factor * self.mode_2 }
+    }
 }
 
 /// A_I(v) and A_II(v) [–] of G = (A_I K_I² + A_II K_II²)/E' for a tip moving at `speed` v [m/s]; 1 at rest, infinite
