@@ -122,7 +122,7 @@ fn logarithmic_ticks(low: f64, high: f64) -> Vec<f64> {
 }
 
 /// A number as people write it on an axis.
-pub(crate) fn word(value: f64) -> String {
+pub fn word(value: f64) -> String {
     let magnitude = value.abs();
     if value == 0.0 {
         "0".into()
@@ -132,7 +132,7 @@ pub(crate) fn word(value: f64) -> String {
         let digits = digits.trim_end_matches('0').trim_end_matches('.');
         format!("{digits}e{exponent}")
     } else {
-        let text = format!("{value:.3}");
+        let text = format!("{value:.4}");
         if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
     }
 }

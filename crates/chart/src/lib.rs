@@ -32,7 +32,7 @@ mod map;
 mod style;
 mod svg;
 
-pub use axis::{Axis, Scale};
+pub use axis::{Axis, Scale, word};
 pub use bars::Bar;
 pub use drawing::Stroke;
 pub use figure::{Figure, Panel, Plot};

@@ -32,7 +32,7 @@ pub(crate) fn height(map: &Map) -> f64 {
 /// Draws a map.
 pub(crate) fn draw(svg: &mut Svg, area: Area, map: &Map) {
     let words = map.up.1.iter().map(|word| width(word, 11.0)).fold(0.0, f64::max);
-    let left = area.x + 30.0 + words;
+    let left = area.x + 14.0 + words;
     let column = (area.x + area.width - 8.0 - left) / map.across.1.len().max(1) as f64;
     let bottom = area.y + ROW * map.cells.len() as f64;
     for (row, values) in map.cells.iter().enumerate() {
@@ -53,7 +53,10 @@ pub(crate) fn draw(svg: &mut Svg, area: Area, map: &Map) {
     }
     let middle = left + 0.5 * column * map.across.1.len() as f64;
     svg.text("m", (middle, bottom + 32.0), 12.0, Anchor::Middle, &map.across.0);
-    svg.upright("m", (area.x + 10.0, 0.5 * (area.y + bottom)), 12.0, &map.up.0);
+    if !map.up.0.is_empty() {
+        // Few rows have no room for a text that runs upwards.
+        svg.text("m", (area.x + 4.0, bottom + 32.0), 12.0, Anchor::Start, &format!("↑ {}", map.up.0));
+    }
 }
 
 /// Number of the colour of a value; what is no number has the last.

@@ -413,6 +413,8 @@ pub(crate) struct ChartArguments {
 pub(crate) enum ChartName {
     /// Errors against time, for each way to solve.
     Accuracy,
+    /// Where the method fails: maps of two parameters.
+    Stability,
     /// Speed and memory over the number of particles, with and without cracks.
     Speed,
     /// Where the time of each example goes.
@@ -423,7 +425,7 @@ pub(crate) enum ChartName {
 
 impl ChartName {
     /// All, in the order in which they are made.
-    pub(crate) const ALL: [Self; 4] = [Self::Speed, Self::Stages, Self::Visual, Self::Accuracy];
+    pub(crate) const ALL: [Self; 5] = [Self::Speed, Self::Stages, Self::Visual, Self::Stability, Self::Accuracy];
 }
 
 /// How to speak.

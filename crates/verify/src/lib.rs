@@ -43,6 +43,7 @@ mod problem;
 mod rates;
 mod report;
 mod scheme;
+mod stability;
 mod study;
 #[cfg(test)]
 mod symmetry;
@@ -55,5 +56,6 @@ pub use list::{CASES, find};
 pub use rates::{Rate, TIMED_PLATES, TimedPlate};
 pub use report::{Expected, Progress, Report, Row, Spread};
 pub use scheme::Scheme;
+pub use stability::{Parameter, STABILITY_MAPS, StabilityMap};
 pub use study::{Measure, STUDIES, Studied, Study};
 pub use table::{markdown, text};

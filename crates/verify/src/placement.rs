@@ -100,6 +100,11 @@ impl Placement {
         }
     }
 
+    /// Turned by any angle [rad].
+    pub(crate) fn by_angle(angle: f64) -> Self {
+        Self { turn: Turn::Angle(angle), ..Self::NATURAL }
+    }
+
     /// Mirrored or not, then turned.
     #[cfg(test)]
     pub(crate) fn by_right_angles(mirror: bool, quarters: u8) -> Self {

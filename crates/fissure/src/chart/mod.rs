@@ -5,6 +5,7 @@ mod accuracy;
 mod examples;
 mod origin;
 mod speed;
+mod stability;
 mod stages;
 mod table;
 mod visual;
@@ -39,6 +40,7 @@ pub(crate) fn chart(arguments: &ChartArguments, report: &Report) -> Result<Exit,
         if arguments.name.is_none_or(|name| name == chart) {
             match chart {
                 ChartName::Accuracy => accuracy::chart(&charting)?,
+                ChartName::Stability => stability::chart(&charting)?,
                 ChartName::Speed => speed::chart(&charting)?,
                 ChartName::Stages => stages::chart(&charting, &arguments.examples)?,
                 ChartName::Visual => visual::chart(&charting, &arguments.examples)?,

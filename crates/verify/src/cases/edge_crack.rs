@@ -148,7 +148,7 @@ impl EdgeCrack {
 }
 
 /// Tada's secant formula for K_I/(σ√(πa)) of a long plate.
-fn tada(ratio: f64) -> f64 {
+pub(crate) fn tada(ratio: f64) -> f64 {
     let angle = FRAC_PI_2 * ratio;
     (angle.tan() / angle).sqrt() * (0.752 + 2.02 * ratio + 0.37 * (1.0 - angle.sin()).powi(3)) / angle.cos()
 }
