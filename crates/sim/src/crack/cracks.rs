@@ -44,7 +44,7 @@ pub(crate) struct Stretch {
     /// Number of the crack.
     pub(crate) crack: usize,
     from: usize,
-    to: usize,
+    pub(crate) to: usize,
 }
 
 impl Stretch {

@@ -14,7 +14,7 @@ use crate::crack::division::{CrackLine, LineEnd};
 use crate::crack::guide::GuideWalk;
 use crate::crack::tip::Tip;
 use crate::saved::{self, Fits};
-use fissure_plane::{Point, Vector, polyline_length};
+use fissure_plane::{Point, Vector, bounds, polyline_length};
 use fissure_scene::{CrackEnd, End, Scene, TipRecord};
 use serde::{Deserialize, Serialize};
 
@@ -33,6 +33,8 @@ pub(crate) struct Crack {
     tips: [Option<Tip>; 2],
     /// Whether its tips run across other cracks.
     pub(crate) crosses: bool,
+    /// Corners of a box around all its points [m].
+    bounds: [Point; 2],
 }
 
 /// How an end of a crack is on its way through an increment.
@@ -123,9 +125,11 @@ impl Crack {
             (live && ends[slot(end)] == CrackEnd::Tip)
                 .then(|| Tip::new(crack.guide(end).map(|guide| GuideWalk::new(guide, 0.0))))
         };
+        let points = subdivided(&crack.points, 0.5 * scene.cell_size);
         Self {
             body: crack.body as u32,
-            points: subdivided(&crack.points, 0.5 * scene.cell_size),
+            bounds: bounds(&points).into(),
+            points,
             ends,
             ways: [Way::default(); 2],
             tips: [tip(End::Start, crack.start_live), tip(End::End, crack.end_live)],
@@ -137,7 +141,8 @@ impl Crack {
     pub(crate) fn branch(&self, number: usize, points: Vec<Point>, tip: Tip) -> Self {
         let ends = [CrackEnd::Junction { crack: number as u32 }, CrackEnd::Tip];
         let (body, crosses) = (self.body, self.crosses);
-        Self { body, points, ends, ways: [Way::default(); 2], tips: [None, Some(tip)], crosses }
+        let bounds = bounds(&points).into();
+        Self { body, points, ends, ways: [Way::default(); 2], tips: [None, Some(tip)], crosses, bounds }
     }
 
     /// The tip at an end; none where the drawing has no live tip.
@@ -178,7 +183,9 @@ impl Crack {
         let margin = Vector::repeat(scene.cell_size);
         let is_inside = |p: &Point| *p >= low - margin && *p <= high + margin;
         let has_length = self.points.len() >= 2 && self.points.windows(2).all(|w| w[0] != w[1]);
-        saved::ensure(has_length && self.points.iter().all(is_inside), "the line of a crack")?;
+        let is_held = |p: &Point| *p >= self.bounds[0] && *p <= self.bounds[1];
+        let fits = |p: &Point| is_inside(p) && is_held(p);
+        saved::ensure(has_length && self.points.iter().all(fits), "the line of a crack")?;
         let trunk = |end: &CrackEnd| if let CrackEnd::Junction { crack } = end { Some(*crack) } else { None };
         saved::below("the end of a crack", self.ends.iter().filter_map(trunk), count)?;
         let mut places = self.ways.iter().flat_map(|way| way.cut_at.iter().chain(&way.target));
@@ -238,6 +245,19 @@ impl Crack {
             End::End => self.points.push(point),
         }
         self.ways[slot(end)].cut_at = Some(point);
+        self.reach_to(point);
+    }
+
+    /// Makes the box around the points hold another one.
+    fn reach_to(&mut self, point: Point) {
+        let [low, high] = self.bounds;
+        self.bounds = [low.inf(&point), high.sup(&point)];
+    }
+
+    /// A distance [m] that no point of the crack is nearer to `place` than.
+    pub(crate) fn least_distance(&self, place: Point) -> f64 {
+        let [low, high] = self.bounds;
+        (low - place).sup(&(place - high)).sup(&Vector::zeros()).norm()
     }
 
     /// What is left of the increment that an end is on its way through [m]; none between increments.
@@ -257,6 +277,8 @@ impl Crack {
         } else {
             *place = from + (target - from) * (distance / left);
         }
+        let place = *place;
+        self.reach_to(place);
     }
 
     /// Length at rest [m].

@@ -119,8 +119,9 @@ impl Gauge<'_> {
     fn domain_radius(&self, moment: &dyn Observed, cracks: &Cracks, id: TipId) -> (f64, bool, Option<f64>) {
         let h = self.scene.cell_size;
         let radius = |bends: bool| {
-            let room = self.free_radius(cracks, id, bends) / h;
             let given = self.scene.solver.j_radius;
+            let enough = given.unwrap_or(0.0).max(WIDE_RADIUS / PART_OF_ROOM);
+            let room = self.free_radius(cracks, id, bends, enough * h) / h;
             let wanted = given.unwrap_or((PART_OF_ROOM * room).clamp(NARROW_RADIUS, WIDE_RADIUS));
             (wanted.min(room).max(SMALLEST_RADIUS) * h, wanted > room)
         };
@@ -136,26 +137,39 @@ impl Gauge<'_> {
     }
 
     /// Distance from a tip to the nearest thing that would spoil the integral: a ring, a crack that does not lead to
-    /// it, the other end of those that do, a bend of theirs where `bends` count [m].
-    fn free_radius(&self, cracks: &Cracks, id: TipId, bends: bool) -> f64 {
+    /// it, the other end of those that do, a bend of theirs where `bends` count [m]; what is farther than `enough` [m]
+    /// is not looked at.
+    fn free_radius(&self, cracks: &Cracks, id: TipId, bends: bool, enough: f64) -> f64 {
         let line = cracks.of(id);
         let tip = cracks.position(id);
         let body = &self.scene.bodies[line.body as usize];
-        let mut free = body.region.distance_to_rings(tip);
+        let mut free = enough.min(body.region.distance_to_rings(tip));
         for inclusion in &body.inclusions {
             // The integrals hold for one material; across an interface they would count its image forces.
             free = free.min(inclusion.region.distance_to_rings(tip));
         }
         let trail = cracks.trail(id);
         for (index, other) in cracks.iter().enumerate().filter(|(_, other)| other.body == line.body) {
+            if other.least_distance(tip) > free {
+                continue;
+            }
             for (k, w) in other.points.windows(2).enumerate() {
                 if !trail.iter().any(|stretch| stretch.crack == index && stretch.has_segment(k)) {
                     free = free.min(fissure_plane::distance_to_segment(tip, w[0], w[1]));
                 }
             }
         }
-        let points = cracks.behind(id, f64::INFINITY);
         let ahead = cracks.ahead(id, crate::crack::DIRECTION_LENGTH * self.scene.cell_size);
+        // A crack goes straight away from its tip, or it is followed on.
+        let mut over = (2.0 * free).max(self.scene.cell_size);
+        let points = loop {
+            let points = cracks.behind(id, over);
+            let is_whole = fissure_plane::polyline_length(&points) < over;
+            if is_whole || points.iter().any(|p| (p - tip).norm() > free) {
+                break points;
+            }
+            over *= 2.0;
+        };
         for w in points.windows(3) {
             let (a, b) = (w[1] - w[0], w[2] - w[1]);
             // Both the turn at one point and what small turns have added up to since the tip.
@@ -169,7 +183,8 @@ impl Gauge<'_> {
                 break;
             }
         }
-        free.min((points[points.len() - 1] - tip).norm())
+        let far = trail.last().map_or(tip, |stretch| cracks[stretch.crack].points[stretch.to]);
+        free.min((far - tip).norm())
     }
 
     /// J along the crack by the thesis' contour: 16 segments, values by kernel averages of the particles on the same
