@@ -149,7 +149,7 @@ impl<'a> Pictures<'a> {
         }
         if !outcome.animated.is_empty() {
             let animation = Animation::new(outcome.animated.into_values().collect());
-            self.folder.write(&animation_name(self.scene), &animation.to_gif()?)?;
+            self.folder.write(&animation_name(self.scene), &animation.to_gif(self.scene.frames.playback)?)?;
         }
         if !outcome.packed.is_empty() {
             let packed: Vec<PackedFrame> = outcome.packed.into_values().collect();

@@ -77,11 +77,11 @@ fn frames_a_sheet_and_an_animation_are_made() {
     let (width, height, _) = pixels(&folder.path().join("out/plate/preview/plate.0001.png"));
     assert_eq!((usize::from(decoder.width()), usize::from(decoder.height())), (width, height));
     assert!(height % 2 == 0, "films want even numbers");
-    let mut frames = 0;
-    while decoder.read_next_frame().unwrap().is_some() {
-        frames += 1;
+    let mut delays = Vec::new();
+    while let Some(frame) = decoder.read_next_frame().unwrap() {
+        delays.push(frame.delay);
     }
-    assert_eq!(frames, 3);
+    assert_eq!(delays, [4, 4, 100], "24 frames per second in hundredths");
 }
 
 /// Truth: 2 m² less the hole, over the square of the width; the view from the front keeps lengths.

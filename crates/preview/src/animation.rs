@@ -4,10 +4,11 @@ use crate::origin::TOOL;
 use crate::picture::{EncodeError, Picture};
 use gif::{Encoder, Extension, Frame, Repeat};
 
-/// Time for which a picture is shown, in hundredths of a second: 25 pictures per second.
-const DELAY: u16 = 4;
-/// The same for the last one before it begins again.
+/// Time for which the last picture is shown before the first comes again, in hundredths of a second.
 const LAST_DELAY: u16 = 100;
+/// Shortest time for which a picture is shown, in hundredths of a second: browsers take less for a mistake, and show it
+/// for ten.
+const SHORTEST_DELAY: f64 = 2.0;
 
 /// A picture in the colours and the packing of GIF, so that pictures can be packed side by side and take little room
 /// until all of them are there.
@@ -21,7 +22,6 @@ impl EncodedFrame {
     /// When it is too large.
     pub fn new(picture: &Picture) -> Result<Self, EncodeError> {
         let mut frame = picture.indexed("GIF")?;
-        frame.delay = DELAY;
         frame.make_lzw_pre_encoded();
         Ok(Self(frame))
     }
@@ -37,13 +37,16 @@ impl Animation {
         Self(frames)
     }
 
-    /// The bytes of a GIF file.
+    /// The bytes of a GIF file that shows `playback` pictures per second, as near as hundredths of a second come to it,
+    /// and at most 50.
     ///
     /// # Errors
     /// When it cannot be encoded.
-    pub fn to_gif(mut self) -> Result<Vec<u8>, EncodeError> {
+    pub fn to_gif(mut self, playback: f64) -> Result<Vec<u8>, EncodeError> {
+        let delay = (100.0 / playback).round().clamp(SHORTEST_DELAY, f64::from(u16::MAX)) as u16;
+        self.0.iter_mut().for_each(|frame| frame.0.delay = delay);
         let Some(last) = self.0.last_mut() else { return Ok(Vec::new()) };
-        last.0.delay = LAST_DELAY;
+        last.0.delay = delay.max(LAST_DELAY);
         let (width, height) = (last.0.width, last.0.height);
         let mut encoder = Encoder::new(Vec::new(), width, height, &[])?;
         encoder.write_raw_extension(Extension::Comment.into(), &[TOOL.as_bytes()])?;

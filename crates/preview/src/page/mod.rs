@@ -39,9 +39,8 @@ struct Facts<'a> {
     scene_hash: &'a str,
     tool: &'a str,
     dark: bool,
-    /// Frames per second of simulated time.
-    rate: f64,
-    thickness: f64,
+    /// Frames per second at which it is played.
+    playback: f64,
     /// How far a vertex may be from where it is [m].
     rounding: f64,
     frames: Vec<FrameFacts>,
@@ -69,8 +68,7 @@ pub fn page(scene: &Scene, frames: &[PackedFrame], series: &Series, theme: Theme
         scene_hash: &scene.hash,
         tool: TOOL,
         dark: theme == Theme::Dark,
-        rate: scene.frames.rate,
-        thickness: scene.output.thickness,
+        playback: scene.frames.playback,
         rounding: shown.iter().map(|frame| frame.rounding).fold(0.0, f64::max),
         frames: shown.iter().map(|f| FrameFacts { number: f.number, time: f.time, triangles: f.triangles }).collect(),
         all_frames: frames.len(),

@@ -255,6 +255,7 @@ function play(playing) {
 }
 
 element("timeline").max = packed.length - 1;
+element("speed").value = facts.playback;
 element("timeline").addEventListener("input", (event) => { play(false); go(Number(event.target.value)); });
 element("play").addEventListener("click", () => play(!state.playing));
 element("explode").addEventListener("input", (event) => { state.explode = Number(event.target.value); arrange(); });
