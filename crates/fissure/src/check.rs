@@ -34,6 +34,7 @@ fn text(scene: &Scene, estimate: &Estimate) -> String {
         ("time step", format!("{} (stable up to {})", seconds(estimate.time_step), seconds(estimate.stable_time_step))),
         ("steps", estimate.steps.to_string()),
         ("frames", format!("{}-{}, showing {}", frames.first, frames.last, seconds(frames.time(frames.last)))),
+        ("accuracy", accuracy(scene, estimate)),
         ("crack growth", format!("about {} m expected", rounded(estimate.growth.max(0.0), 2))),
         (
             "expected time",
@@ -45,6 +46,21 @@ fn text(scene: &Scene, estimate: &Estimate) -> String {
         ),
     ];
     rows.iter().map(|(name, value)| format!("{name:<16} {value}\n")).collect()
+}
+
+/// "K_I within about 2.5 % at rest, by the shortest crack, `notch`: 4.0 cells".
+fn accuracy(scene: &Scene, estimate: &Estimate) -> String {
+    estimate.accuracy.map_or_else(
+        || "no crack has a tip".into(),
+        |accuracy| {
+            format!(
+                "K_I within about {} % at rest, by the shortest crack, `{}`: {:.1} cells to a tip",
+                rounded(100.0 * accuracy.error, 2),
+                scene.cracks[accuracy.crack].name,
+                accuracy.cells
+            )
+        },
+    )
 }
 
 /// `value` with so many digits.
@@ -69,6 +85,7 @@ fn json(scene: &Scene, estimate: &Estimate) -> String {
         "first_frame": scene.frames.first,
         "last_frame": scene.frames.last,
         "growth": estimate.growth,
+        "mode_1_error": estimate.accuracy.map(|accuracy| accuracy.error),
         "solver_seconds": estimate.seconds,
         "seconds": estimate.seconds + seconds_of_meshes(scene, estimate),
         "memory_bytes": estimate.memory,

@@ -105,7 +105,7 @@ mod updated;
 mod wide;
 
 pub use error::SimulationError;
-pub use foresight::warnings;
+pub use foresight::{Accuracy, warnings};
 pub use material::constitutive::{
     PlasticStep, cauchy_stress, energy_density, first_piola_stress, hardening_factor, kirchhoff_stress, plastic_step,
     volume_change,

@@ -64,8 +64,8 @@ fn curves() -> Vec<Curve> {
 
 /// The default, as `standard` has it for brittle bodies.
 const DEFAULT: &str = "total bilinear";
-const CONTOUR: &str = "total, contour";
-const BARE_CONTOUR: &str = "total, contour without area term";
+const CONTOUR: &str = "total contour";
+const BARE_CONTOUR: &str = "total contour without area term";
 /// Curves that differ in how tips are measured only.
 const MEASURES: [&str; 2] = [CONTOUR, BARE_CONTOUR];
 

@@ -26,8 +26,7 @@ pub(super) fn chart(charting: &Charting<'_>) -> Result<(), Failure> {
                 });
                 let (value, message) = match found {
                     Ok(value) => (format!("{value:.3e}"), String::new()),
-                    // It becomes a cell of a table.
-                    Err(error) => (String::new(), error.to_string().replace(',', ";")),
+                    Err(error) => (String::new(), error.to_string()),
                 };
                 table.add(key.into_iter().chain([value, message]).collect())?;
             }

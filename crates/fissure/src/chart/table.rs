@@ -50,11 +50,12 @@ impl<'a> Table<'a> {
         &self.rows
     }
 
-    /// Adds a row, which is on the disk when this returns.
+    /// Adds a row, which is on the disk when this returns. Commas and line breaks in cells become semicolons.
     ///
     /// # Errors
     /// When it cannot be written.
     pub(super) fn add(&mut self, row: Vec<String>) -> Result<(), Failure> {
+        let row: Vec<String> = row.into_iter().map(|cell| cell.replace([',', '\n'], ";")).collect();
         self.folder.append(&self.name, format!("{}\n", row.join(",")).as_bytes())?;
         self.rows.push(row);
         Ok(())
@@ -81,12 +82,12 @@ mod tests {
         let row = |words: [&str; 2]| words.map(str::to_owned).to_vec();
         let mut table = Table::open(&folder, "t", &ours, "what,much").unwrap();
         table.add(row(["a", "1"])).unwrap();
-        table.add(row(["b", "2"])).unwrap();
+        table.add(row(["b", "2, 3"])).unwrap();
         let whole = folder.read("t.csv").unwrap().unwrap();
         folder.write("t.csv", &whole[..whole.len() - 2]).unwrap();
         let mut table = Table::open(&folder, "t", &ours, "what,much").unwrap();
         assert_eq!(table.rows(), [row(["a", "1"])]);
-        table.add(row(["b", "2"])).unwrap();
+        table.add(row(["b", "2; 3"])).unwrap();
         assert_eq!(folder.read("t.csv").unwrap().unwrap(), whole);
         assert!(Table::open(&folder, "t", &theirs, "what,much").unwrap().rows().is_empty());
     }

@@ -3,6 +3,7 @@
 //! Faults need the particles and stop a simulation before it begins. Warnings come from the scene alone and stop
 //! nothing; they rest on estimates of the order of magnitude, made so that they stay silent where they are not sure.
 
+mod accuracy;
 mod buried;
 mod course;
 mod drawn_tip;
@@ -18,6 +19,8 @@ mod toughness;
 mod wholeness;
 mod width;
 
+pub use accuracy::Accuracy;
+pub(crate) use accuracy::accuracy;
 pub(crate) use course::Course;
 pub(crate) use strain::overload;
 

@@ -2,7 +2,7 @@
 //! would run.
 
 use super::Simulation;
-use crate::foresight::Course;
+use crate::foresight::{self, Accuracy, Course};
 use crate::{SimulationError, formulation, memory};
 use fissure_scene::{Formulation, Kernel, Scene};
 
@@ -23,6 +23,8 @@ pub struct Estimate {
     pub formulation: String,
     /// Memory a run takes at most, frames on their way to disk and meshes included [bytes].
     pub memory: u64,
+    /// How right K will be; none: no crack has a tip.
+    pub accuracy: Option<Accuracy>,
     /// Length by which cracks are expected to grow [m], roughly.
     pub growth: f64,
     /// Wall time of the solver with the writing of its frames [s], on the two-core machine that the costs of its parts
@@ -81,6 +83,7 @@ impl Simulation {
             steps: (steps_per_frame * frames) as u64,
             formulation: format!("{name}: {}", choice.reason),
             memory: memory::needed(&simulation.scene, simulation.formulation, course.growth) as u64,
+            accuracy: foresight::accuracy(&simulation.scene, simulation.formulation),
             growth: course.growth,
             seconds: simulation.expected_seconds(steps_per_frame * frames, frames + 1.0, course),
         })
