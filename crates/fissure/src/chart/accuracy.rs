@@ -74,14 +74,16 @@ pub(super) fn chart(charting: &Charting<'_>) -> Result<(), Failure> {
     let mut table = Table::open(&charting.folder, NAME, &charting.origin, COLUMNS)?;
     for study in &STUDIES {
         for curve in curves() {
-            if study.is_long && !curve.in_long_case {
-                continue;
+            let is_wanted = if charting.quick { curve.is_default } else { curve.in_long_case };
+            if !study.is_long || is_wanted {
+                measure(charting, study, &curve, &mut table)?;
             }
-            measure(charting, study, &curve, &mut table)?;
         }
+        // What is there can be looked at while the rest is measured.
+        charting.draw(NAME, &schemes(charting, &table))?;
+        charting.draw("measures", &measures(charting, &table))?;
     }
-    charting.draw(NAME, &schemes(charting, &table))?;
-    charting.draw("measures", &measures(charting, &table))
+    Ok(())
 }
 
 /// Measures a curve, from coarse to fine, as far as it goes.
