@@ -4,7 +4,7 @@ use crate::frame_set::FrameSet;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint, value_parser};
 use fissure_preview::SIZES;
-use fissure_scene::{Format, Part, UpAxis};
+use fissure_scene::{Cut, Format, Part, UpAxis};
 use std::path::PathBuf;
 
 /// Cracked mesh sequences from a drawing.
@@ -183,6 +183,10 @@ pub(crate) struct MeshArguments {
     /// Up axis of PLY files, y or z; glTF is always y up [default: as in the scene].
     #[arg(long, value_name = "AXIS", value_parser = words::<UpAxis>(&["y", "z"]), hide_possible_values = true)]
     pub(crate) up: Option<UpAxis>,
+    /// Where the material is cut: opening, as it is in each frame, or rest, so that vertices keep their numbers until a
+    /// crack grows [default: as in the scene].
+    #[arg(long, value_name = "WHERE", value_parser = words::<Cut>(&["opening", "rest"]), hide_possible_values = true)]
+    pub(crate) cut: Option<Cut>,
 }
 
 /// Arguments of `check`.
@@ -509,13 +513,14 @@ mod tests {
         let mut program = Arguments::command();
         program.build();
         let run = program.find_subcommand("run").unwrap();
-        for option in ["formats", "parts", "up"] {
+        for option in ["formats", "parts", "up", "cut"] {
             let words = run.get_arguments().find(|argument| argument.get_id() == option).unwrap().get_possible_values();
             let words: Vec<_> = words.iter().map(|word| word.get_name().to_owned()).collect();
             let schema = fissure_scene::schema();
             let of_schema = &schema["$defs"][match option {
                 "formats" => "Format",
                 "parts" => "Part",
+                "cut" => "Cut",
                 _ => "UpAxis",
             }];
             let known = of_schema["oneOf"].as_array().unwrap().iter().map(|word| word["const"].as_str().unwrap());

@@ -68,6 +68,9 @@ impl<'a> Mesher<'a> {
         if let Some(up) = typed.up {
             options.up = up;
         }
+        if let Some(cut) = typed.cut {
+            options.cut = cut;
+        }
         if !typed.parts.is_empty() {
             options.parts.clone_from(&typed.parts);
         }

@@ -11,13 +11,15 @@ use crate::options::PostOptions;
 use crate::outline::outline_edges;
 use crate::pieces::numbers;
 use crate::pinch::part_pinches;
+use crate::rest_cut::rest_cap;
 use crate::short_edges::without_short_edges;
 use crate::slivers::without_slivers;
 use crate::slot::Slot;
+use crate::smooth::SmoothCracks;
 use crate::snap::Grid;
 use crate::source::{Carried, SourceEdge};
 use crate::triangulate::{Cap, Division, triangulate};
-use fissure_scene::{CrackFrame, Fragments, Frame, Region, Scene, Walls};
+use fissure_scene::{CrackFrame, Cut, Fragments, Frame, Region, Scene, Walls};
 use std::collections::BTreeMap;
 
 /// One solid per fragment, by body and number.
@@ -26,53 +28,58 @@ use std::collections::BTreeMap;
 pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result<Vec<Mesh>, PostError> {
     let fragments = Fragments::of_frame(frame);
     let numbers = numbers(&fragments, frame);
-    let grids = grids(scene, frame, true)?;
-    let mut lines = MovedLines::new(scene, frame);
-    if options.walls == Walls::All {
-        let parted = parted_segments(&frame.cracks, &fragments, &numbers);
+    let cracks = SmoothCracks::new(scene, frame, &fragments, options.smoothing);
+    let grids = grids(scene, frame, &cracks.cracks)?;
+    let mut lines = MovedLines::new(scene, frame, &cracks);
+    // Triangles that do not depend on the opening have two sides everywhere.
+    if options.walls == Walls::All || options.cut == Cut::Rest {
+        let parted = parted_segments(&cracks.cracks, &fragments, &numbers);
         let of_crack = |(crack, parted): (&CrackFrame, Vec<bool>)| shifts(crack, &parted, grids[crack.body as usize]);
-        lines = lines.hold_open(frame.cracks.iter().zip(parted).map(of_crack).collect());
+        lines = lines.hold_open(cracks.cracks.iter().zip(parted).map(of_crack).collect());
     }
-    let mut sources = BTreeMap::<(u32, u32), Vec<SourceEdge>>::new();
+    let mut objects = BTreeMap::<(u32, u32), Vec<Vec<Vec<SourceEdge>>>>::new();
     for (fragment, number) in fragments.list().iter().zip(numbers) {
         let grid = grids[fragment.body as usize];
-        let edges = fragment.boundaries.iter().flat_map(|boundary| lines.edges(boundary, grid));
-        sources.entry((fragment.body, number)).or_default().extend(edges);
+        let boundaries = fragment.boundaries.iter().map(|boundary| lines.edges(boundary, grid)).collect();
+        objects.entry((fragment.body, number)).or_default().push(boundaries);
     }
-    let mut meshes = Vec::with_capacity(sources.len());
-    let interiors = interiors(scene, frame);
-    for ((body, piece), sources) in sources {
-        let (grid, interior) = (grids[body as usize], &interiors[body as usize]);
-        meshes.extend(solid(scene, frame, options, Part { body, piece, sources, grid, interior })?);
+    let mut meshes = Vec::with_capacity(objects.len());
+    let solids = Solids::new(scene, frame, options, &grids);
+    for ((body, piece), fragments) in objects {
+        if options.cut == Cut::Rest
+            && let Some(mesh) = solids.at_rest(body, piece, &fragments)
+        {
+            meshes.extend(mesh);
+            continue;
+        }
+        let sources = fragments.into_iter().flatten().flatten().collect();
+        meshes.extend(solids.opened(body, piece, sources)?);
     }
     Ok(meshes)
 }
 
 /// One solid per body, without its cracks.
 pub(crate) fn whole_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result<Vec<Mesh>, PostError> {
-    let grids = grids(scene, frame, false)?;
+    let grids = grids(scene, frame, &[])?;
     let mut meshes = Vec::with_capacity(grids.len());
-    for (body, (grid, interior)) in (0..).zip(grids.into_iter().zip(&interiors(scene, frame))) {
+    let options = &PostOptions { cut: Cut::Opening, ..options.clone() };
+    let solids = Solids::new(scene, frame, options, &grids);
+    for (body, &grid) in (0..).zip(&grids) {
         let rings = frame.outlines.iter().filter(|o| o.body == body);
         let sources = rings.flat_map(|outline| outline_edges(outline, grid)).collect();
         let particles = &frame.particles;
         let of_body = (0..particles.len()).filter(|&p| particles.body[p] == body);
         let piece = of_body.map(|p| particles.piece[p]).min().unwrap_or(0);
-        meshes.extend(solid(scene, frame, options, Part { body, piece, sources, grid, interior })?);
+        meshes.extend(solids.opened(body, piece, sources)?);
     }
     Ok(meshes)
 }
 
-/// What the material of each body carries.
-fn interiors<'a>(scene: &Scene, frame: &'a Frame) -> Vec<Interior<'a>> {
-    (0..scene.bodies.len() as u32).map(|body| Interior::new(frame, body, scene.particle_spacing)).collect()
-}
-
-/// The grid of each body.
-fn grids(scene: &Scene, frame: &Frame, with_cracks: bool) -> Result<Vec<Grid>, PostError> {
+/// The grid of each body, fine enough for its outline and `cracks`.
+fn grids(scene: &Scene, frame: &Frame, cracks: &[CrackFrame]) -> Result<Vec<Grid>, PostError> {
     let grid = |(number, body): (u32, &fissure_scene::Body)| {
         let outlines = frame.outlines.iter().filter(|o| o.body == number);
-        let cracks = frame.cracks.iter().filter(|c| with_cracks && c.body == number);
+        let cracks = cracks.iter().filter(|c| c.body == number);
         let faces = cracks.flat_map(|c| c.above.iter().chain(&c.below));
         let grid = Grid::covering(outlines.flat_map(|o| &o.position).chain(faces));
         let (low, high) = body.region.bounds();
@@ -82,55 +89,95 @@ fn grids(scene: &Scene, frame: &Frame, with_cracks: bool) -> Result<Vec<Grid>, P
     (0..).zip(&scene.bodies).map(grid).collect()
 }
 
-/// What becomes one solid.
-struct Part<'a> {
-    body: u32,
-    /// Number of the fragment.
-    piece: u32,
-    /// Its boundary.
-    sources: Vec<SourceEdge>,
-    /// The grid it lies on.
-    grid: Grid,
-    /// What its body carries.
-    interior: &'a Interior<'a>,
+/// Makes solids of the boundaries of a frame.
+struct Solids<'a> {
+    scene: &'a Scene,
+    frame: &'a Frame,
+    options: &'a PostOptions,
+    grids: &'a [Grid],
+    interiors: Vec<Interior<'a>>,
 }
 
-/// Extrudes what the boundary of a part encloses; nothing where that is no more than rounding.
-fn solid(scene: &Scene, frame: &Frame, options: &PostOptions, part: Part<'_>) -> Result<Option<Mesh>, PostError> {
-    let Part { body, piece, mut sources, grid, interior } = part;
-    let body = &scene.bodies[body as usize];
-    let (low, high) = body.region.bounds();
-    let size = (high - low).amax();
-    let least = options.shortest_edge * size / grid.step;
-    let shapes = without_slivers(material(&sources));
-    let parted = part_pinches(shapes, &mut sources, 0.25 * least).map_err(|place| {
-        let place = grid.place(place);
-        PostError::Pinch { frame: frame.number, body: body.name.clone(), x: place.x, y: place.y }
-    })?;
-    let mut shapes = without_slivers(parted);
-    let is_drawn = |edge: &Edge, source: &SourceEdge| is_drawn(&body.region, edge, source);
-    without_short_edges(&mut shapes, least, &mut sources, is_drawn);
-    let area = |shape: &Shape| 0.5 * shape.iter().map(|c| twice_area(c)).sum::<i128>() as f64 * grid.step * grid.step;
-    shapes.retain(|shape| area(shape) >= options.smallest_fragment);
-    if shapes.is_empty() {
-        return Ok(None);
+impl<'a> Solids<'a> {
+    fn new(scene: &'a Scene, frame: &'a Frame, options: &'a PostOptions, grids: &'a [Grid]) -> Self {
+        let interior = |body| Interior::new(frame, body, scene.particle_spacing, options.cut);
+        let interiors = (0..scene.bodies.len() as u32).map(interior).collect();
+        Self { scene, frame, options, grids, interiors }
     }
-    let division = Division::Fine { size: options.cap_size.map(|size| size / grid.step) };
-    let caps: Vec<Cap> = shapes.iter().map(|shape| triangulate(shape, division)).collect();
-    let extrusion = Extrusion {
-        grid,
-        sources: &sources,
-        thickness: options.thickness,
-        crease_angle: options.crease_angle,
-        texture_origin: low,
-        texture_size: size,
-        interior: Some(interior),
-    };
-    let area = caps.iter().map(|cap| area(&cap.shape)).sum();
-    let name = object_name(&body.name, "piece", piece);
-    let mut mesh = Mesh::new(name, piece, Content::Solid { area, thickness: options.thickness });
-    caps.iter().for_each(|cap| extrusion.solid(cap, &mut mesh));
-    Ok(Some(mesh))
+
+    /// Extrudes what the boundary of fragment `piece` encloses as it is now; nothing where that is no more than
+    /// rounding.
+    fn opened(&self, body: u32, piece: u32, mut sources: Vec<SourceEdge>) -> Result<Option<Mesh>, PostError> {
+        let (grid, options) = (self.grids[body as usize], self.options);
+        let least = options.shortest_edge * self.size(body) / grid.step;
+        let shapes = without_slivers(material(&sources));
+        let region = &self.scene.bodies[body as usize].region;
+        let parted = part_pinches(shapes, &mut sources, 0.25 * least).map_err(|place| {
+            let (place, body) = (grid.place(place), self.scene.bodies[body as usize].name.clone());
+            PostError::Pinch { frame: self.frame.number, body, x: place.x, y: place.y }
+        })?;
+        let mut shapes = without_slivers(parted);
+        let is_drawn = |edge: &Edge, source: &SourceEdge| is_drawn(region, edge, source);
+        without_short_edges(&mut shapes, least, &mut sources, is_drawn);
+        shapes.retain(|shape| area(shape, grid) >= options.smallest_fragment);
+        let division = Division::Fine { size: options.cap_size.map(|size| size / grid.step) };
+        let extrusion = self.extrusion(body, &sources);
+        let carried = |cap: Cap| {
+            let within = self.interiors[body as usize].of_cap(&cap, &extrusion, piece);
+            (cap, within)
+        };
+        let caps = shapes.iter().map(|shape| carried(triangulate(shape, division))).collect();
+        Ok(self.mesh(body, piece, &extrusion, caps))
+    }
+
+    /// Extrudes the triangles of `fragments` at rest, moved with the material. None where that is no solid: where the
+    /// material has folded over so that one corner lies on another. Nothing in it where it is smaller than asked for.
+    fn at_rest(&self, body: u32, piece: u32, fragments: &[Vec<Vec<SourceEdge>>]) -> Option<Option<Mesh>> {
+        let sources: Vec<SourceEdge> = fragments.iter().flatten().flatten().copied().collect();
+        let (grid, interior) = (self.grids[body as usize], &self.interiors[body as usize]);
+        let (low, high) = self.scene.bodies[body as usize].region.bounds();
+        let grids = [grid, Grid::covering(&[low, high])];
+        let mut first = 0;
+        let mut caps = Vec::with_capacity(fragments.len());
+        for boundaries in fragments {
+            caps.push(rest_cap(boundaries, first, self.options.cap_size, grids, interior, piece)?);
+            first += boundaries.iter().map(Vec::len).sum::<usize>();
+        }
+        caps.retain(|(cap, _)| area(&cap.shape, grid) >= self.options.smallest_fragment);
+        let mesh = self.mesh(body, piece, &self.extrusion(body, &sources), caps);
+        mesh.as_ref().is_none_or(|mesh| mesh.check().is_ok()).then_some(mesh)
+    }
+
+    fn extrusion<'b>(&self, body: u32, sources: &'b [SourceEdge]) -> Extrusion<'b> {
+        Extrusion {
+            grid: self.grids[body as usize],
+            sources,
+            thickness: self.options.thickness,
+            crease_angle: self.options.crease_angle,
+            texture_origin: self.scene.bodies[body as usize].region.bounds().0,
+            texture_size: self.size(body),
+        }
+    }
+
+    /// The longer side of a body at rest [m].
+    fn size(&self, body: u32) -> f64 {
+        let (low, high) = self.scene.bodies[body as usize].region.bounds();
+        (high - low).amax()
+    }
+
+    /// The solid of some polygons, with what their corners within carry; none of none.
+    fn mesh(&self, body: u32, piece: u32, extrusion: &Extrusion<'_>, caps: Vec<(Cap, Vec<Carried>)>) -> Option<Mesh> {
+        let area = caps.iter().map(|(cap, _)| area(&cap.shape, extrusion.grid)).sum();
+        let name = object_name(&self.scene.bodies[body as usize].name, "piece", piece);
+        let mut mesh = Mesh::new(name, piece, Content::Solid { area, thickness: self.options.thickness });
+        caps.iter().for_each(|(cap, within)| extrusion.solid(cap, within, &mut mesh));
+        (!caps.is_empty()).then_some(mesh)
+    }
+}
+
+/// Area of a polygon [m²].
+fn area(shape: &Shape, grid: Grid) -> f64 {
+    0.5 * shape.iter().map(|contour| twice_area(contour)).sum::<i128>() as f64 * grid.step * grid.step
 }
 
 /// Whether an edge is one that was drawn, from corner to corner.

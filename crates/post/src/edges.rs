@@ -2,6 +2,7 @@
 
 use crate::opening::arc_lengths;
 use crate::slot::Slot;
+use crate::smooth::SmoothCracks;
 use crate::snap::Grid;
 use crate::source::{Carried, SourceEdge};
 use fissure_scene::{BoundaryEdge, CrackEnd, Frame, Line, Point, Scene, Vector};
@@ -24,6 +25,7 @@ impl Now {
 /// The rings and crack faces of a frame as they are now.
 pub(crate) struct MovedLines<'a> {
     frame: &'a Frame,
+    cracks: &'a SmoothCracks<'a>,
     /// Length at rest along each ring and crack up to each of its points [m]; a ring's last is that of its first point
     /// on the way back.
     ring_arcs: Vec<Vec<f64>>,
@@ -33,8 +35,8 @@ pub(crate) struct MovedLines<'a> {
 }
 
 impl<'a> MovedLines<'a> {
-    /// The lines of `frame`.
-    pub(crate) fn new(scene: &Scene, frame: &'a Frame) -> Self {
+    /// The lines of `frame`, with its cracks as `cracks`.
+    pub(crate) fn new(scene: &Scene, frame: &'a Frame, cracks: &'a SmoothCracks<'a>) -> Self {
         let ring = |rest: &Vec<Point>| {
             let mut arc = 0.0;
             let steps = (0..rest.len()).map(|i| (rest[(i + 1) % rest.len()] - rest[i]).norm());
@@ -47,6 +49,7 @@ impl<'a> MovedLines<'a> {
         let first = |crack: u32| scene.cracks.get(crack as usize).and_then(|c| c.points.first().copied());
         Self {
             frame,
+            cracks,
             ring_arcs: frame.outlines.iter().map(|o| ring(&o.rest)).collect(),
             crack_arcs: frame.cracks.iter().map(|c| arc_lengths(&c.rest, first(c.crack))).collect(),
             shifts: frame.cracks.iter().map(|c| vec![Vector::zeros(); c.rest.len()]).collect(),
@@ -68,7 +71,11 @@ impl<'a> MovedLines<'a> {
             .map(|i| {
                 let (edge, [start, end]) = (&boundary[i], [corners[i], corners[(i + 1) % count]]);
                 let arcs = self.arcs(edge);
-                let carried = |k: usize, now: Now| Carried { rest: edge.rest[k], velocity: now.velocity, arc: arcs[k] };
+                let carried = |k: usize, now: Now| Carried {
+                    rest: edge.rest[k] + self.offset(edge, k),
+                    velocity: now.velocity,
+                    arc: arcs[k],
+                };
                 SourceEdge {
                     a: grid.snap(start.place),
                     b: grid.snap(end.place),
@@ -97,7 +104,7 @@ impl<'a> MovedLines<'a> {
 
     /// A point of a line.
     fn at(&self, line: Line, point: usize) -> Now {
-        let (cracks, rings) = (&self.frame.cracks, &self.frame.outlines);
+        let (cracks, rings) = (&self.cracks.cracks, &self.frame.outlines);
         let (place, velocity) = match line {
             Line::Ring(i) => (rings[i].position[point], rings[i].velocity[point]),
             Line::Above(i) => (cracks[i].above[point] + self.shifts[i][point], cracks[i].above_velocity[point]),
@@ -133,6 +140,16 @@ impl<'a> MovedLines<'a> {
         match line {
             Line::Ring(i) => self.frame.outlines[i].rest[point],
             Line::Above(i) | Line::Below(i) => self.frame.cracks[i].rest[point],
+        }
+    }
+
+    /// How far the smoothing of its crack has moved an end of an edge, at rest [m]. What crosses is not moved.
+    fn offset(&self, edge: &BoundaryEdge, end: usize) -> Vector {
+        match edge.line {
+            Line::Above(i) | Line::Below(i) if whole_point(edge, end).is_some() => {
+                self.cracks.offsets[i][edge.points[end]]
+            }
+            _ => Vector::zeros(),
         }
     }
 

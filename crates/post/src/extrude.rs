@@ -1,7 +1,6 @@
 //! From a polygon to a solid: two caps and the walls between them.
 
 use crate::boolean::Edge;
-use crate::interior::Interior;
 use crate::mesh::{Mesh, Vertex};
 use crate::slot::Slot;
 use crate::snap::{Grid, GridPoint};
@@ -24,25 +23,26 @@ pub(crate) struct Extrusion<'a> {
     pub(crate) texture_origin: Point,
     /// Length of one texture unit [m].
     pub(crate) texture_size: f64,
-    /// What the material within carries.
-    pub(crate) interior: Option<&'a Interior<'a>>,
 }
 
 impl Extrusion<'_> {
-    /// Adds the caps and walls of a polygon to `mesh`.
-    pub(crate) fn solid(&self, cap: &Cap, mesh: &mut Mesh) {
-        self.caps(cap, mesh);
+    /// Adds the caps and walls of a polygon to `mesh`. `within`: what its corners within carry, in their order.
+    pub(crate) fn solid(&self, cap: &Cap, within: &[Carried], mesh: &mut Mesh) {
+        self.caps(cap, within, mesh);
         for contour in &cap.shape {
             self.walls(contour, true, mesh);
         }
     }
 
+    /// What the corners of the polygon carry, contour by contour.
+    pub(crate) fn outer(&self, cap: &Cap) -> Vec<(GridPoint, Carried)> {
+        cap.shape.iter().flatten().map(|edge| (edge.a, self.source(edge).at(edge.a))).collect()
+    }
+
     /// Both caps; texture coordinates from the rest position, so that textures do not swim.
-    fn caps(&self, cap: &Cap, mesh: &mut Mesh) {
-        let outer: Vec<(GridPoint, Carried)> =
-            cap.shape.iter().flatten().map(|edge| (edge.a, self.source(edge).at(edge.a))).collect();
-        let within = cap.within.iter().map(|&point| (point, self.within(point, &outer, mesh.piece)));
-        let corners: Vec<(GridPoint, Carried)> = outer.iter().copied().chain(within).collect();
+    fn caps(&self, cap: &Cap, within: &[Carried], mesh: &mut Mesh) {
+        let mut corners = self.outer(cap);
+        corners.extend(cap.within.iter().copied().zip(within.iter().copied()));
         for side in [1.0, -1.0] {
             let first = mesh.vertices.len() as u32;
             for (point, carried) in &corners {
@@ -59,21 +59,6 @@ impl Extrusion<'_> {
             let triangles = cap.triangles.iter().map(|&t| turned(t).map(|i| first + i));
             mesh.triangles[Slot::Outside as usize].extend(triangles);
         }
-    }
-
-    /// What the material at a corner within the polygon carries; where no particle is near, it has moved as the nearest
-    /// of the `outer` corners.
-    fn within(&self, point: GridPoint, outer: &[(GridPoint, Carried)], piece: u32) -> Carried {
-        let place = self.grid.place(point);
-        if let Some((rest, velocity)) = self.interior.and_then(|interior| interior.at(place, piece)) {
-            return Carried { rest, velocity, arc: 0.0 };
-        }
-        let distance = |p: GridPoint| ((p.x - point.x) as f64).hypot((p.y - point.y) as f64);
-        let nearest = outer.iter().min_by(|p, q| distance(p.0).total_cmp(&distance(q.0)));
-        nearest.map_or(Carried { rest: place, velocity: Vector::zeros(), arc: 0.0 }, |(corner, carried)| Carried {
-            rest: carried.rest + (place - self.grid.place(*corner)),
-            ..*carried
-        })
     }
 
     /// The walls on the edges of `contour`, which is a ring if `closed`; texture coordinates by arc length at rest.
@@ -124,10 +109,14 @@ impl Extrusion<'_> {
     fn corner_normal(&self, edge: &Edge, other: Option<&Edge>) -> Vector {
         let own = wall_normal(edge);
         let Some(other) = other else { return own };
-        let theirs = wall_normal(other);
-        let same_slot = self.source(edge).slot == self.source(other).slot;
-        let smooth = same_slot && own.dot(&theirs) >= self.crease_angle.cos();
-        if smooth { (own + theirs).normalize() } else { own }
+        let (source, other_source) = (self.source(edge), self.source(other));
+        // At rest, so that no edge becomes sharp as the material bends; what has no length there counts as it is now.
+        let sides = match [source, other_source].map(SourceEdge::direction_at_rest) {
+            [Some(own), Some(theirs)] => [own, theirs],
+            _ => [own, wall_normal(other)],
+        };
+        let smooth = source.slot == other_source.slot && sides[0].dot(&sides[1]) >= self.crease_angle.cos();
+        if smooth { (own + wall_normal(other)).normalize() } else { own }
     }
 
     fn source(&self, edge: &Edge) -> &SourceEdge {

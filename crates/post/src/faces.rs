@@ -5,12 +5,14 @@ use crate::extrude::Extrusion;
 use crate::mesh::{Content, Mesh, object_name};
 use crate::opening::opening_edges;
 use crate::options::PostOptions;
+use crate::smooth::SmoothCracks;
 use crate::snap::Grid;
-use fissure_scene::{CrackFrame, Frame, Scene};
+use fissure_scene::{CrackFrame, Fragments, Frame, Scene};
 
 /// One mesh per crack: both faces over the thickness, normals into the opening. Closed cracks have faces too.
 pub(crate) fn face_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Vec<Mesh> {
-    frame.cracks.iter().map(|crack| face_mesh(scene, crack, options)).collect()
+    let cracks = SmoothCracks::new(scene, frame, &Fragments::of_frame(frame), options.smoothing);
+    cracks.cracks.iter().map(|crack| face_mesh(scene, crack, options)).collect()
 }
 
 fn face_mesh(scene: &Scene, crack: &CrackFrame, options: &PostOptions) -> Mesh {
@@ -26,7 +28,6 @@ fn face_mesh(scene: &Scene, crack: &CrackFrame, options: &PostOptions) -> Mesh {
         crease_angle: options.crease_angle,
         texture_origin: low,
         texture_size: (high - low).amax(),
-        interior: None,
     };
     let name = object_name(&body.name, "crack", crack.crack);
     let mut mesh = Mesh::new(name, crack.crack, Content::Surface);

@@ -7,6 +7,8 @@
 //! 2. `pieces`, `edges`: the fragments of the frame ([`fissure_scene::Fragments`]) get the numbers of the simulation,
 //!    and each its own boundary: edges of moved rings and crack faces that know the rest position, velocity and arc
 //!    length of the material at their ends. `outline`: a body without its cracks.
+//!    `smooth`: paths of cracks without their zigzag. `rest_cut`: triangles at rest that the material carries, in place
+//!    of steps 3 to 6.
 //! 3. `boolean`: a fragment is where its own edges wind around a place at least once. An open crack in it takes one
 //!    off; where its faces overlap one is added, so cracks that are closed have no walls, unless all are to have some
 //!    (`held_open`). Fragments may turn, fly
@@ -50,12 +52,14 @@ mod post;
 mod provenance;
 #[cfg(feature = "files")]
 mod record;
+mod rest_cut;
 mod rigid;
 #[cfg(feature = "files")]
 mod sequences;
 mod short_edges;
 mod slivers;
 mod slot;
+mod smooth;
 mod snap;
 mod source;
 mod triangulate;

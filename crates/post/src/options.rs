@@ -1,7 +1,7 @@
 //! How a frame becomes meshes.
 
 use crate::error::PostError;
-use fissure_scene::{OutputSettings, Part, UpAxis, Walls};
+use fissure_scene::{Cut, OutputSettings, Part, UpAxis, Walls};
 
 /// Shortest edge of contours, as a part of the body: twice the distance at which readers merge vertices, because
 /// triangles without small angles need shorter ones than their outline has.
@@ -18,6 +18,10 @@ pub struct PostOptions {
     pub smallest_fragment: f64,
     /// Which cracks inside a fragment have walls.
     pub walls: Walls,
+    /// Where the material is cut.
+    pub cut: Cut,
+    /// How far the paths of cracks may be moved to be smooth, in cells; 0: not at all.
+    pub smoothing: f64,
     /// Edges shorter than this part of the body are taken out, unless they were drawn; contours that touch in a point
     /// are parted by a quarter of it.
     pub shortest_edge: f64,
@@ -37,6 +41,8 @@ impl From<&OutputSettings> for PostOptions {
             crease_angle: 30.0_f64.to_radians(),
             smallest_fragment: output.smallest_fragment,
             walls: output.walls,
+            cut: output.surfaces.cut,
+            smoothing: output.surfaces.smoothing,
             shortest_edge: SHORTEST_EDGE,
             cap_size: output.surfaces.cap_size,
             parts: output.parts.clone(),
@@ -66,6 +72,7 @@ impl PostOptions {
         positive("thickness", self.thickness)?;
         self.cap_size.map_or(Ok(()), |size| positive("cap_size", size))?;
         not_negative("smallest_fragment", self.smallest_fragment)?;
+        not_negative("smoothing", self.smoothing)?;
         not_negative("shortest_edge", self.shortest_edge)?;
         not_negative("crease_angle", self.crease_angle)
     }

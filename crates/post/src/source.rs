@@ -29,6 +29,11 @@ pub(crate) struct SourceEdge {
 }
 
 impl SourceEdge {
+    /// Direction at rest; none without length.
+    pub(crate) fn direction_at_rest(&self) -> Option<Vector> {
+        (self.carried[1].rest - self.carried[0].rest).try_normalize(0.0)
+    }
+
     /// What is carried at `point` on the edge: linear between the ends, exactly theirs at the ends.
     pub(crate) fn at(&self, point: GridPoint) -> Carried {
         let [start, end] = self.carried;

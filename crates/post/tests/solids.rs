@@ -8,7 +8,7 @@ mod winding;
 use common::{Opened, frame, halves, options, scene, square};
 use fissure_plane::find_crossing;
 use fissure_post::{Content, Mesh, PostError, PostOptions, Slot, Vertex, post_frame};
-use fissure_scene::{CrackEnd, Frame, Part, Point, Region, Scene, Vector, Walls};
+use fissure_scene::{CrackEnd, Cut, Frame, Part, Point, Region, Scene, Vector, Walls};
 use proptest::prelude::*;
 use winding::covered_area;
 
@@ -343,6 +343,58 @@ fn textures_stay_with_the_material() {
     let walls = textures(&moved);
     assert_eq!(walls, textures(&rest));
     assert!(walls.iter().all(|t| (0.0..=4e6).contains(&t[0]) && (0.0..=1e6).contains(&t[1])));
+}
+
+/// Truth: what the other cut says, and by hand. Both cuts of halves that are parted and of a crack within agree to the
+/// grid; triangles and texture coordinates of the cut at rest do not depend on how far anything has moved.
+#[test]
+fn the_cut_at_rest_stays_and_has_the_same_area() {
+    let cut = |scene: &Scene, frame: &Frame, cut| {
+        let options = PostOptions { cut, shortest_edge: 0.0, ..options(scene) };
+        post_frame(scene, frame, &options).unwrap().parts.remove(0).1
+    };
+    let (scene, parted) = halves(20.0, [(0.0, Vector::zeros()), (0.3, Vector::new(3.0, 0.5))]);
+    let (_, together) = halves(20.0, [(0.0, Vector::zeros()), (0.0, Vector::zeros())]);
+    let region = square(20.0);
+    let (open, closed) = (frame(&region, 3, &[edge_crack(20.0, 0.2)]), frame(&region, 3, &[edge_crack(20.0, 0.0)]));
+    for [first, second] in [[parted, together], [open, closed]] {
+        let (moved, rest) = (cut(&scene, &first, Cut::Rest), cut(&scene, &second, Cut::Rest));
+        // Closed cracks are held open by eight grid steps of 2⁻¹⁹ m, all along their 20 m.
+        let hair = 20.0 * 8.0 * 2.0_f64.powi(-19);
+        for (frame, meshes) in [(&first, &moved), (&second, &rest)] {
+            let difference = area(meshes) - area(&cut(&scene, frame, Cut::Opening));
+            assert!(difference.abs() < 1.5 * hair, "{difference:e}");
+        }
+        assert_eq!(moved.len(), rest.len());
+        for (moved, rest) in moved.iter().zip(&rest) {
+            assert_eq!(moved.triangles, rest.triangles);
+            let close = |p: &Vertex, q: &Vertex| (0..2).all(|k| (p.texture[k] - q.texture[k]).abs() < 1e-9);
+            assert!(moved.vertices.iter().zip(&rest.vertices).all(|(p, q)| close(p, q)));
+        }
+    }
+}
+
+/// Truth: by hand. A zigzag that cuts a square in two: smoothed, it keeps the areas of both halves and their sum to the
+/// grid, and its turns are a fraction of what they were.
+#[test]
+fn smoothed_walls_match() {
+    let region = square(20.0);
+    let scene = scene(region.clone());
+    let rest: Vec<Point> = (0..=80).map(|i| Point::new(0.25 * f64::from(i), 10.0 + 0.1 * f64::from(i % 2))).collect();
+    let crack = |opening: f64| Opened::symmetric(rest.clone(), &[opening; 81], CrackEnd::Mouth, CrackEnd::Mouth);
+    for opening in [0.0, 0.01] {
+        let mut frame = frame(&region, 3, &[crack(opening)]);
+        frame.particles.piece = frame.particles.rest.iter().map(|x| u32::from(x.y > 10.0)).collect();
+        let smooth = PostOptions { smoothing: 0.5, ..options(&scene) };
+        let meshes = post_frame(&scene, &frame, &smooth).unwrap().parts.remove(0).1;
+        assert_eq!(meshes.len(), 2);
+        assert!((area(&meshes) - (400.0 - 20.0 * opening)).abs() < 1e-3, "{}", area(&meshes));
+        let walls = meshes[0].vertices.iter().filter(|v| v.normal[2] == 0.0);
+        let heights = walls.filter(|v| (9.5..10.5).contains(&v.position[1]));
+        let middle = heights.filter(|v| (3.0..17.0).contains(&v.position[0])).map(|v| v.position[1]);
+        let (low, high) = middle.fold((20.0_f64, 0.0_f64), |(low, high), y| (low.min(y), high.max(y)));
+        assert!(high - low < 0.02, "{low} {high}");
+    }
 }
 
 #[test]

@@ -362,9 +362,35 @@ pub struct OutputSettings {
     pub surfaces: SurfaceSettings,
 }
 
+/// Where the material is cut.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "load", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Cut {
+    /// As it is in each frame: outlines and crack faces, moved, with all openings taken off.
+    #[default]
+    Opening,
+    /// At rest: triangles that the material carries along, the same from frame to frame until a crack grows.
+    Rest,
+}
+
 /// How surfaces are made.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct SurfaceSettings {
     /// Length of the edges within caps, at most; none: as long as may be [m].
     pub cap_size: Option<f64>,
+    /// Where the material is cut.
+    pub cut: Cut,
+    /// How far the paths of cracks may be moved to be smooth, in cells.
+    pub smoothing: f64,
 }
+
+impl Default for SurfaceSettings {
+    fn default() -> Self {
+        Self { cap_size: None, cut: Cut::default(), smoothing: SMOOTHING }
+    }
+}
+
+/// Half a cell: what the solver resolves of a path.
+pub(crate) const SMOOTHING: f64 = 0.5;

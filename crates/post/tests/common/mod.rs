@@ -5,7 +5,7 @@ use fissure_post::PostOptions;
 use fissure_scene::{
     Body, CrackEnd, CrackFrame, Curve, Formulation, Frame, FrameSettings, GrowthSettings, JMethod, Kernel, Material,
     ModeSplit, OnDistortion, OutlineFrame, OutputSettings, Part, ParticleFrame, PlaneState, Point, Region, Scene,
-    SolverSettings, TipDivision, Transfer, UpAxis, Vector,
+    SolverSettings, SurfaceSettings, TipDivision, Transfer, UpAxis, Vector,
 };
 
 /// A scene with one body.
@@ -72,7 +72,7 @@ pub fn scene(region: Region) -> Scene {
             up: UpAxis::Z,
             smallest_fragment: 0.0,
             walls: Default::default(),
-            surfaces: Default::default(),
+            surfaces: SurfaceSettings { smoothing: 0.0, ..Default::default() },
         },
     }
 }

@@ -3,7 +3,7 @@
 use super::{Ease, Switch};
 use crate::range::{
     ACUTE, AREA, BENDING, CELLS, CRITICAL_COMPRESSION, CRITICAL_STRETCH, DAMPING, FRACTION, FRAME, FRAME_RATE,
-    FRICTION, HARDENING, LENGTH, RELEASE_RATIO, SPEED_FACTOR, TIME_STEP, pairs,
+    FRICTION, HARDENING, LENGTH, RELEASE_RATIO, SMOOTHING_CELLS, SPEED_FACTOR, TIME_STEP, pairs,
 };
 use crate::scene::Plasticity;
 use crate::settings::*;
@@ -215,6 +215,12 @@ pub struct OutputKeys {
     /// Longest edges of triangles within the caps in m, for displacement and bending. Default: as long as may be.
     #[schemars(transform = LENGTH.bounds())]
     pub cap_size: Option<f64>,
+    /// Where the material is cut: `opening` (default) as it is in each frame, `rest` once for all frames until a crack
+    /// grows, so that vertices keep their numbers.
+    pub cut: Cut,
+    /// How far the paths of cracks that grew freely may be moved to be smooth, in cells. Default: 0.5; 0: not at all.
+    #[schemars(transform = SMOOTHING_CELLS.bounds())]
+    pub smoothing: f64,
 }
 
 impl Default for OutputKeys {
@@ -227,6 +233,8 @@ impl Default for OutputKeys {
             smallest_fragment: 0.0,
             walls: Walls::default(),
             cap_size: None,
+            cut: Cut::default(),
+            smoothing: SMOOTHING,
         }
     }
 }

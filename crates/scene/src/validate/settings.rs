@@ -5,7 +5,7 @@ use crate::fault::Check;
 use crate::fault::{KeyPath, SceneFault, short};
 use crate::range::{
     ACUTE, AREA, BENDING, CELLS, DAMPING, FRACTION, FRAME_RATE, FRAMES, FRICTION, ITEMS, LENGTH, PARTICLE_FRAMES,
-    PARTICLES, RELEASE_RATIO, TIME, TIME_STEP, UNIT,
+    PARTICLES, RELEASE_RATIO, SMOOTHING_CELLS, TIME, TIME_STEP, UNIT,
 };
 use crate::scene::{Body, Scene};
 use crate::settings::Branching;
@@ -165,6 +165,7 @@ impl Scene {
         }
         LENGTH.check(KeyPath::setting("output", "thickness"), "the thickness", o.thickness)?;
         AREA.check(KeyPath::setting("output", "smallest_fragment"), "the smallest fragment", o.smallest_fragment)?;
+        SMOOTHING_CELLS.check(KeyPath::setting("output", "smoothing"), "`smoothing`", o.surfaces.smoothing)?;
         o.surfaces.cap_size.map_or(Ok(()), |size| self.validate_cap_size(size))
     }
 

@@ -111,7 +111,7 @@ impl<'d> Resolver<'d> {
             up: keys.up,
             smallest_fragment: keys.smallest_fragment,
             walls: keys.walls,
-            surfaces: SurfaceSettings { cap_size: keys.cap_size },
+            surfaces: SurfaceSettings { cap_size: keys.cap_size, cut: keys.cut, smoothing: keys.smoothing },
         })
     }
 }
