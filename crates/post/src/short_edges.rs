@@ -19,15 +19,11 @@ pub(crate) fn without_short_edges(
         let outer = shape.first().is_some_and(|outer| outer.iter().all(|edge| is_short(edge, sources)));
         shape.retain(|contour| !outer && !contour.iter().all(|edge| is_short(edge, sources)));
         for index in 0..shape.len() {
-            let mut begin = 0;
-            while let Some(found) = (begin..shape[index].len()).find(|&i| is_short(&shape[index][i], sources)) {
-                match without(shape, index, found) {
-                    Some(first) => {
-                        merge(&mut shape[index], first, sources);
-                        begin = found.saturating_sub(2);
-                    }
-                    None => begin = found + 1,
-                }
+            // What cannot go yet may go when a corner beside it has gone.
+            loop {
+                let short = (0..shape[index].len()).filter(|&i| is_short(&shape[index][i], sources));
+                let Some(first) = short.filter_map(|found| without(shape, index, found)).next() else { break };
+                merge(&mut shape[index], first, sources);
             }
         }
     }
@@ -66,7 +62,12 @@ fn is_free(shape: &Shape, index: usize, first: usize) -> bool {
     let contour = &shape[index];
     let second = contour[(first + 1) % contour.len()];
     let (a, b, c) = (contour[first].a, second.a, second.b);
+    let [low_x, high_x] = [a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x)];
+    let [low_y, high_y] = [a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y)];
     let is_outside = |p: GridPoint| {
+        if p.x < low_x || p.x > high_x || p.y < low_y || p.y > high_y {
+            return true;
+        }
         let sides = [side(a, b, p), side(b, c, p), side(c, a, p)];
         p == a || p == b || p == c || (sides.iter().any(|s| *s > 0) && sides.iter().any(|s| *s < 0))
     };
