@@ -24,7 +24,11 @@ impl RigidMotion {
     /// sums of the cross and the dot products of both, about their means. `from` and `to` have as many points; none
     /// give no motion.
     pub(crate) fn fit(from: &[Point], to: &[Point]) -> (Self, f64) {
-        let mean = |points: &[Point]| points.iter().map(|p| p.coords).sum::<Vector>() / points.len().max(1) as f64;
+        // Sums of nothing are −0, and the angle of (−0, −0) is −π.
+        if from.is_empty() {
+            return (Self { angle: 0.0, shift: Vector::zeros() }, 0.0);
+        }
+        let mean = |points: &[Point]| points.iter().map(|p| p.coords).sum::<Vector>() / points.len() as f64;
         let (from_mean, to_mean) = (mean(from), mean(to));
         let pairs = || from.iter().zip(to).map(|(p, q)| (p.coords - from_mean, q.coords - to_mean));
         let cross: f64 = pairs().map(|(p, q)| p.perp(&q)).sum();
