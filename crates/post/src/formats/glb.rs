@@ -1,6 +1,8 @@
 //! Binary glTF 2.0, a file per frame.
 
-use super::gltf_document::{Document, made_by};
+use super::gltf_document::Document;
+#[cfg(feature = "files")]
+use super::gltf_document::made_by;
 use super::{FileFormat, FormatError, Shot};
 use fissure_scene::Part;
 

@@ -1,7 +1,9 @@
 //! Binary glTF 2.0 of a whole sequence: fragments that move as rigid bodies are nodes that move.
 
 use super::gltf_animation::{Film, Motion};
-use super::gltf_document::{Document, made_by};
+use super::gltf_document::Document;
+#[cfg(feature = "files")]
+use super::gltf_document::made_by;
 use super::sequence_file::{About, Sequence};
 use super::{FileFormat, FormatError, Shot};
 use crate::mesh::{Content, Mesh, Vertex, object_name};

@@ -1,7 +1,9 @@
 //! Binary glTF 2.0 of a whole sequence: each frame is there in its time.
 
 use super::gltf_animation::{Film, Motion};
-use super::gltf_document::{Document, ObjectExtras, made_by};
+#[cfg(feature = "files")]
+use super::gltf_document::made_by;
+use super::gltf_document::{Document, ObjectExtras};
 use super::sequence_file::{About, Sequence};
 use super::{FileFormat, FormatError, Shot};
 use crate::provenance::Provenance;
