@@ -12,13 +12,15 @@ const NAME: &str = "accuracy";
 const COLUMNS: &str = "study,scheme,measure,cells,places,worst,rms,cpu_seconds,particles,steps";
 
 /// CPU time that one point may take, all places together [s]: curves end where the next would take more.
-const MOST_SECONDS: f64 = 16.0;
+const MOST_SECONDS: f64 = 12.0;
 const MOST_SECONDS_QUICK: f64 = 3.0;
 /// The default goes so many times further.
 const DEFAULT_GOES_ON: f64 = 4.0;
+/// Errors above this are not drawn: they are no solutions [–].
+const MOST_ERROR: f64 = 3.0;
 /// Places when only the shape is wanted.
 const PLACES_QUICK: usize = 2;
-/// Resolutions that are measured of every curve, however long they take.
+/// Resolutions that are measured of every curve, however long they take; one in the case that takes longest.
 const LEAST_POINTS: usize = 2;
 /// Time goes with the third power of resolution: particles in two dimensions, and steps.
 const GROWTH_OF_TIME: f64 = 3.0;
@@ -94,7 +96,7 @@ fn measure(charting: &Charting<'_>, study: &Study, curve: &Curve, table: &mut Ta
     let mut last: Option<(f64, f64)> = None;
     for (index, &cells) in study.cells.iter().enumerate() {
         if let Some((coarser, seconds)) = last
-            && index >= LEAST_POINTS
+            && index >= if study.is_long { 1 } else { LEAST_POINTS }
             && seconds * (cells / coarser).powf(GROWTH_OF_TIME) > most
         {
             break;
@@ -146,7 +148,7 @@ fn points(table: &Table<'_>, study: &Study, curve: &str, measure: Measure) -> Ve
     let rows = table.rows().iter();
     let of_curve = rows.filter(|row| row[0] == study.name && row[1] == curve && row[2] == measure.name());
     let point = |row: &Vec<String>| Point { cells: number(&row[3]), seconds: number(&row[7]), worst: number(&row[5]) };
-    of_curve.map(point).filter(|p| p.worst.is_finite() && p.worst > 0.0 && p.seconds > 0.0).collect()
+    of_curve.map(point).filter(|p| (0.0..=MOST_ERROR).contains(&p.worst) && p.worst > 0.0 && p.seconds > 0.0).collect()
 }
 
 /// What nothing measured is both faster and more accurate than, from fast to accurate.
@@ -200,7 +202,7 @@ fn schemes(charting: &Charting<'_>, table: &Table<'_>) -> Figure {
             format!(
                 "Points of a curve are resolutions, from few cells on the left to many on the right ({}). The broad line is the front: \
                  nothing measured is both faster and more accurate. Ringed: the default at the resolution that is advised. \
-                 The worst of several places, turns and spacings on the grid counts. Dashes tell kernels.",
+                 The worst of several places, turns and spacings on the grid counts; errors above 300 % are not shown. Dashes tell kernels.",
                 STUDIES.map(|study| format!("{}: {} {}", study.name, list(study.cells), study.along)).join("; ")
             ),
             charting.origin.to_string(),

@@ -4,7 +4,7 @@ use super::Charting;
 use super::table::{Table, number};
 use crate::failure::Failure;
 use fissure_chart::{Axis, Figure, Line, Panel, Plot};
-use fissure_sim::Simulation;
+use fissure_sim::{Simulation, SimulationError};
 use fissure_verify::{TIMED_PLATES, TimedPlate};
 use std::time::Duration;
 
@@ -36,13 +36,20 @@ fn measure(charting: &Charting<'_>, plate: &TimedPlate, cells: u16, table: &mut 
     let least = if charting.quick { LEAST_TIME_QUICK } else { LEAST_TIME };
     let task = format!("{}, {cells} cells along a side", plate.name);
     let Some(scene) = plate.scene(cells) else { return Ok(()) };
-    let reckoned = Simulation::estimate(&scene)?;
-    let bytes = reckoned.memory as f64 / reckoned.particles as f64;
-    let rate = charting.showing(&task, |say| {
+    let found = charting.showing(&task, |say| {
         say("timing");
-        plate.time(cells, least)
-    })?;
-    let Some(rate) = rate else { return Ok(()) };
+        let reckoned = Simulation::estimate(&scene)?;
+        Ok((reckoned.memory as f64 / reckoned.particles as f64, plate.time(cells, least)?))
+    });
+    let (bytes, rate) = match found {
+        Ok((bytes, Some(rate))) => (bytes, rate),
+        Ok((_, None)) => return Ok(()),
+        // A machine with little memory has no room for the largest.
+        Err::<_, SimulationError>(error) => {
+            charting.report.warn(&format!("{task}: {error}"));
+            return Ok(());
+        }
+    };
     table.add(vec![
         plate.name.into(),
         cells.to_string(),
