@@ -39,6 +39,7 @@ def arguments():
     parser.add_argument("--frames", type=frame_numbers, help="for example 1,10,20-30 or 1-45x2; default: all")
     parser.add_argument("--output", type=pathlib.Path, help="folder for the pictures; default: `render` in that of the run")
     parser.add_argument("--mp4", type=pathlib.Path, help="write a film instead of pictures")
+    parser.add_argument("--jpeg", action="store_true", help="write JPEG instead of PNG files")
     parser.add_argument("--size", type=int, default=960, help="width in pixels")
     parser.add_argument("--samples", type=int, default=64, help="per pixel; more is less noise")
     parser.add_argument("--yaw", type=float, default=-25, help="degrees about the upright axis")
@@ -139,11 +140,14 @@ def main():
         bpy.ops.render.render(animation=True)
         print(f"wrote {options.mp4}")
         return
+    ending = "jpg" if options.jpeg else "png"
+    scene.render.image_settings.file_format = "JPEG" if options.jpeg else "PNG"
+    scene.render.image_settings.quality = 85
     folder = (options.output or options.run / "render").resolve()
     folder.mkdir(parents=True, exist_ok=True)
     for number in sorted(number for number in run.cracked if options.frames is None or number in options.frames):
         scene.frame_set(number)
-        scene.render.filepath = str(folder / f"{run.name}.{number:04}.png")
+        scene.render.filepath = str(folder / f"{run.name}.{number:04}.{ending}")
         bpy.ops.render.render(write_still=True)
         print(f"wrote {scene.render.filepath}", flush=True)
 

@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# Makes the pictures of docs/gallery.md: docs/gallery.sh. PYTHON is one with Blender as a module (pip install bpy==5.0.1).
+# A folder TAKES in the environment that holds takes as NAME/NAME.take saves simulating them again.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+python="${PYTHON:-python3}"
+
+# Name, look and frame.
+shots=("logo glass 24")
+
+cargo build --release --quiet --workspace --bin fissure
+for shot in "${shots[@]}"; do
+    read -r name look frame <<< "$shot"
+    if [ -n "${TAKES:-}" ]; then
+        target/release/fissure post "$TAKES/$name" --output "out/$name" --formats glb --parts cracked,collider --quiet
+    else
+        target/release/fissure run "examples/$name/scene.toml" --formats glb --parts cracked,collider --quiet
+    fi
+    "$python" pipeline/blender/render_run.py "out/$name" --look "$look" --frames "$frame" --size 640 --samples 24 --jpeg \
+        --output docs/gallery
+done
