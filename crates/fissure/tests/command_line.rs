@@ -710,6 +710,18 @@ const TABLE: &[Bad] = &[
         ..FINE
     },
     Bad {
+        what: "an opening with a factor and keyframes",
+        arguments: &["check", "plate.toml", "--set", "output.opening={factor=2,keyframes=[[1,0]]}"],
+        says: &["factor", "keyframes", "output.opening"],
+        ..FINE
+    },
+    Bad {
+        what: "keyframes of explode that go back",
+        arguments: &["check", "plate.toml", "--set", "output.explode={keyframes=[[9,0],[3,1]]}"],
+        says: &["do not rise", "sort them by frame"],
+        ..FINE
+    },
+    Bad {
         what: "a format in the scene that shows none of its parts",
         arguments: &["check", "plate.toml", "--set", "output.formats=[\"svg\"]", "--set", "output.parts=[\"faces\"]"],
         says: &["svg", "cracked", "output.formats"],

@@ -34,7 +34,7 @@ fn collider_mesh(
     let turn = nalgebra::Rotation2::new(pose.angle);
     let placed: Vec<Point> = ring.iter().map(|p| pose.position + turn * p.coords).collect();
     let (velocity, spin) = motion(collider, frame.time);
-    let grid = Grid::covering(&placed);
+    let grid = Grid::covering(&placed, 0.0);
     let (low, high) = fissure_plane::bounds(&ring);
     grid.check(frame.number, &collider.name, (high - low).amax())?;
     let mut arc = 0.0;

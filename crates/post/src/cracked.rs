@@ -3,8 +3,9 @@
 use crate::boolean::{Edge, Shape, material, twice_area};
 use crate::edges::MovedLines;
 use crate::error::PostError;
+use crate::explode::offsets;
 use crate::extrude::Extrusion;
-use crate::held_open::{parted_segments, shifts};
+use crate::held_open::{parted_segments, shifts as held_open};
 use crate::interior::Interior;
 use crate::mesh::{Content, Mesh, object_name};
 use crate::options::PostOptions;
@@ -19,7 +20,8 @@ use crate::smooth::SmoothCracks;
 use crate::snap::Grid;
 use crate::source::{Carried, SourceEdge};
 use crate::triangulate::{Cap, Division, triangulate};
-use fissure_scene::{CrackFrame, Cut, Fragments, Frame, Region, Scene, Walls};
+use crate::widening::{Shift, Widening, widened};
+use fissure_scene::{CrackFrame, Cut, Fragments, Frame, Region, Scene, Vector, Walls};
 use std::collections::BTreeMap;
 
 /// One solid per fragment, by body and number.
@@ -29,14 +31,19 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
     let fragments = Fragments::of_frame(frame);
     let numbers = numbers(&fragments, frame);
     let cracks = SmoothCracks::new(scene, frame, &fragments, options.smoothing);
-    let grids = grids(scene, frame, &cracks.cracks)?;
-    let mut lines = MovedLines::new(scene, frame, &cracks);
+    let offsets = options.explode.as_ref().map(|curve| offsets(frame, curve.value(frame.time))).unwrap_or_default();
+    let mut shifts = shifts(scene, frame.time, &cracks.cracks, options);
+    let beyond = farthest(offsets.values()) + farthest(shifts.iter().flatten().flat_map(|s| [&s.above, &s.below]));
+    let grids = grids(scene, frame, &cracks.cracks, beyond)?;
     // Triangles that do not depend on the opening have two sides everywhere.
     if options.walls == Walls::All || options.cut == Cut::Rest {
         let parted = parted_segments(&cracks.cracks, &fragments, &numbers);
-        let of_crack = |(crack, parted): (&CrackFrame, Vec<bool>)| shifts(crack, &parted, grids[crack.body as usize]);
-        lines = lines.hold_open(cracks.cracks.iter().zip(parted).map(of_crack).collect());
+        for ((crack, parted), shifts) in cracks.cracks.iter().zip(parted).zip(&mut shifts) {
+            let held = held_open(&widened(crack, shifts), &parted, grids[crack.body as usize]);
+            shifts.iter_mut().zip(held).for_each(|(shift, held)| *shift = *shift + held);
+        }
     }
+    let lines = MovedLines::new(scene, frame, &cracks, shifts);
     let mut objects = BTreeMap::<(u32, u32), Vec<Vec<Vec<SourceEdge>>>>::new();
     for (fragment, number) in fragments.list().iter().zip(numbers) {
         let grid = grids[fragment.body as usize];
@@ -46,21 +53,36 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
     let mut meshes = Vec::with_capacity(objects.len());
     let solids = Solids::new(scene, frame, options, &grids);
     for ((body, piece), fragments) in objects {
+        let offset = offsets.get(&(body, piece)).copied().unwrap_or_default();
+        let apart = |mesh: Mesh| mesh.moved(grids[body as usize].nearest(offset));
         if options.cut == Cut::Rest
             && let Some(mesh) = solids.at_rest(body, piece, &fragments)
         {
-            meshes.extend(mesh);
+            meshes.extend(mesh.map(apart));
             continue;
         }
         let sources = fragments.into_iter().flatten().flatten().collect();
-        meshes.extend(solids.opened(body, piece, sources)?);
+        meshes.extend(solids.opened(body, piece, sources)?.map(apart));
     }
     Ok(meshes)
 }
 
+/// How far the faces of each crack are moved at each of its points: as it is to be shown.
+fn shifts(scene: &Scene, time: f64, cracks: &[CrackFrame], options: &PostOptions) -> Vec<Vec<Shift>> {
+    let still = |crack: &CrackFrame| vec![Shift::default(); crack.rest.len()];
+    let Some(opening) = &options.opening else { return cracks.iter().map(still).collect() };
+    let widening = Widening::new(opening, scene, time);
+    cracks.iter().map(|crack| widening.shifts(crack)).collect()
+}
+
+/// The largest component of any of `vectors` [m].
+fn farthest<'a>(vectors: impl Iterator<Item = &'a Vector>) -> f64 {
+    vectors.map(Vector::amax).fold(0.0, f64::max)
+}
+
 /// One solid per body, without its cracks.
 pub(crate) fn whole_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result<Vec<Mesh>, PostError> {
-    let grids = grids(scene, frame, &[])?;
+    let grids = grids(scene, frame, &[], 0.0)?;
     let mut meshes = Vec::with_capacity(grids.len());
     let options = &PostOptions { cut: Cut::Opening, ..options.clone() };
     let solids = Solids::new(scene, frame, options, &grids);
@@ -75,13 +97,13 @@ pub(crate) fn whole_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) 
     Ok(meshes)
 }
 
-/// The grid of each body, fine enough for its outline and `cracks`.
-fn grids(scene: &Scene, frame: &Frame, cracks: &[CrackFrame]) -> Result<Vec<Grid>, PostError> {
+/// The grid of each body, fine enough for its outline and `cracks`, all moved by so much `beyond` [m].
+fn grids(scene: &Scene, frame: &Frame, cracks: &[CrackFrame], beyond: f64) -> Result<Vec<Grid>, PostError> {
     let grid = |(number, body): (u32, &fissure_scene::Body)| {
         let outlines = frame.outlines.iter().filter(|o| o.body == number);
         let cracks = cracks.iter().filter(|c| c.body == number);
         let faces = cracks.flat_map(|c| c.above.iter().chain(&c.below));
-        let grid = Grid::covering(outlines.flat_map(|o| &o.position).chain(faces));
+        let grid = Grid::covering(outlines.flat_map(|o| &o.position).chain(faces), beyond);
         let (low, high) = body.region.bounds();
         grid.check(frame.number, &body.name, (high - low).amax())?;
         Ok(grid)
@@ -136,7 +158,7 @@ impl<'a> Solids<'a> {
         let sources: Vec<SourceEdge> = fragments.iter().flatten().flatten().copied().collect();
         let (grid, interior) = (self.grids[body as usize], &self.interiors[body as usize]);
         let (low, high) = self.scene.bodies[body as usize].region.bounds();
-        let grids = [grid, Grid::covering(&[low, high])];
+        let grids = [grid, Grid::covering(&[low, high], 0.0)];
         let mut first = 0;
         let mut caps = Vec::with_capacity(fragments.len());
         for boundaries in fragments {

@@ -5,6 +5,7 @@ use crate::slot::Slot;
 use crate::smooth::SmoothCracks;
 use crate::snap::Grid;
 use crate::source::{Carried, SourceEdge};
+use crate::widening::{Shift, both};
 use fissure_scene::{BoundaryEdge, CrackEnd, Frame, Line, Point, Scene, Vector};
 
 /// Where a point of a line is now.
@@ -17,6 +18,11 @@ struct Now {
 }
 
 impl Now {
+    /// Moved by `shift` [m].
+    fn by(self, shift: Vector) -> Self {
+        Self { place: self.place + shift, ..self }
+    }
+
     fn middle(self, other: Self) -> Self {
         Self { place: nalgebra::center(&self.place, &other.place), velocity: 0.5 * (self.velocity + other.velocity) }
     }
@@ -30,13 +36,14 @@ pub(crate) struct MovedLines<'a> {
     /// on the way back.
     ring_arcs: Vec<Vec<f64>>,
     crack_arcs: Vec<Vec<f64>>,
-    /// How far each point of the face above each crack is moved to hold it open, and that below the other way [m].
-    shifts: Vec<Vec<Vector>>,
+    /// How far the faces of each crack are moved at each of its points.
+    shifts: Vec<Vec<Shift>>,
 }
 
 impl<'a> MovedLines<'a> {
-    /// The lines of `frame`, with its cracks as `cracks`.
-    pub(crate) fn new(scene: &Scene, frame: &'a Frame, cracks: &'a SmoothCracks<'a>) -> Self {
+    /// The lines of `frame`, with its cracks as `cracks`, the faces of each moved by its shifts, one for each of its
+    /// points.
+    pub(crate) fn new(scene: &Scene, frame: &'a Frame, cracks: &'a SmoothCracks<'a>, shifts: Vec<Vec<Shift>>) -> Self {
         let ring = |rest: &Vec<Point>| {
             let mut arc = 0.0;
             let steps = (0..rest.len()).map(|i| (rest[(i + 1) % rest.len()] - rest[i]).norm());
@@ -52,13 +59,8 @@ impl<'a> MovedLines<'a> {
             cracks,
             ring_arcs: frame.outlines.iter().map(|o| ring(&o.rest)).collect(),
             crack_arcs: frame.cracks.iter().map(|c| arc_lengths(&c.rest, first(c.crack))).collect(),
-            shifts: frame.cracks.iter().map(|c| vec![Vector::zeros(); c.rest.len()]).collect(),
+            shifts,
         }
-    }
-
-    /// Holds each crack open by its shifts, one for each of its points.
-    pub(crate) fn hold_open(self, shifts: Vec<Vec<Vector>>) -> Self {
-        Self { shifts, ..self }
     }
 
     /// The edges of a boundary, in its order, on `grid`. Where the walk passes from one line to another both edges end
@@ -93,22 +95,37 @@ impl<'a> MovedLines<'a> {
     fn corner(&self, before: &BoundaryEdge, after: &BoundaryEdge) -> Now {
         let (arrives, leaves) = (whole_point(before, 1), whole_point(after, 0));
         let is_same_line = crack_of(before.line) == crack_of(after.line);
+        let (there, here) = (self.shift(before, 1), self.shift(after, 0));
         match (arrives, leaves) {
-            (Some(p), Some(q)) if is_same_line && p == q => self.at(before.line, p).middle(self.at(after.line, q)),
-            (_, Some(q)) if self.is_end(after.line, q) => self.at(after.line, q),
-            (Some(p), _) if self.is_end(before.line, p) => self.at(before.line, p),
-            (None, None) if before.line == after.line => self.between(after),
-            _ => self.crossing(before, after),
+            (Some(p), Some(q)) if is_same_line && p == q => {
+                self.at(before.line, p).by(there).middle(self.at(after.line, q).by(here))
+            }
+            // Both faces move: the corner moves with both.
+            (_, Some(q)) if self.is_end(after.line, q) => self.at(after.line, q).by(both(there, here)),
+            (Some(p), _) if self.is_end(before.line, p) => self.at(before.line, p).by(both(there, here)),
+            (None, None) if before.line == after.line => self.between(after).by(here),
+            _ => self.crossing(before, after).by(both(there, here)),
         }
     }
 
-    /// A point of a line.
+    /// How far the face of an edge is moved at one of its ends, 0 or 1 [m].
+    fn shift(&self, edge: &BoundaryEdge, end: usize) -> Vector {
+        let shift = |point: usize| match edge.line {
+            Line::Ring(_) => Vector::zeros(),
+            Line::Above(i) => self.shifts[i][point].above,
+            Line::Below(i) => self.shifts[i][point].below,
+        };
+        let [p, q] = edge.points.map(shift);
+        p + edge.span[end] * (q - p)
+    }
+
+    /// A point of a line, as the material is.
     fn at(&self, line: Line, point: usize) -> Now {
         let (cracks, rings) = (&self.cracks.cracks, &self.frame.outlines);
         let (place, velocity) = match line {
             Line::Ring(i) => (rings[i].position[point], rings[i].velocity[point]),
-            Line::Above(i) => (cracks[i].above[point] + self.shifts[i][point], cracks[i].above_velocity[point]),
-            Line::Below(i) => (cracks[i].below[point] - self.shifts[i][point], cracks[i].below_velocity[point]),
+            Line::Above(i) => (cracks[i].above[point], cracks[i].above_velocity[point]),
+            Line::Below(i) => (cracks[i].below[point], cracks[i].below_velocity[point]),
         };
         Now { place, velocity }
     }

@@ -7,18 +7,24 @@ use crate::opening::opening_edges;
 use crate::options::PostOptions;
 use crate::smooth::SmoothCracks;
 use crate::snap::Grid;
+use crate::widening::{Widening, widened};
 use fissure_scene::{CrackFrame, Fragments, Frame, Scene};
 
 /// One mesh per crack: both faces over the thickness, normals into the opening. Closed cracks have faces too.
 pub(crate) fn face_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Vec<Mesh> {
     let cracks = SmoothCracks::new(scene, frame, &Fragments::of_frame(frame), options.smoothing);
-    cracks.cracks.iter().map(|crack| face_mesh(scene, crack, options)).collect()
+    let Some(opening) = &options.opening else {
+        return cracks.cracks.iter().map(|crack| face_mesh(scene, crack, options)).collect();
+    };
+    let widening = Widening::new(opening, scene, frame.time);
+    let shown = |crack: &CrackFrame| widened(crack, &widening.shifts(crack));
+    cracks.cracks.iter().map(|crack| face_mesh(scene, &shown(crack), options)).collect()
 }
 
 fn face_mesh(scene: &Scene, crack: &CrackFrame, options: &PostOptions) -> Mesh {
     let body = &scene.bodies[crack.body as usize];
     let (low, high) = body.region.bounds();
-    let grid = Grid::covering(crack.above.iter().chain(&crack.below));
+    let grid = Grid::covering(crack.above.iter().chain(&crack.below), 0.0);
     let first = scene.cracks.get(crack.crack as usize).and_then(|c| c.points.first().copied());
     let sources = opening_edges(crack, first, grid);
     let extrusion = Extrusion {

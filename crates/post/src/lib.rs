@@ -11,7 +11,7 @@
 //!    of steps 3 to 6.
 //! 3. `boolean`: a fragment is where its own edges wind around a place at least once. An open crack in it takes one
 //!    off; where its faces overlap one is added, so cracks that are closed have no walls, unless all are to have some
-//!    (`held_open`). Fragments may turn, fly
+//!    (`held_open`), or cracks are shown wider than they are (`widening`). Fragments may turn, fly
 //!    apart, touch and come to lie on each other as they like: each keeps its walls.
 //! 4. `slivers`: what is mere rounding goes.
 //! 5. `pinch`: contours that touch in a point are parted, so that the solid is manifold for every reader.
@@ -33,6 +33,7 @@ mod colliders;
 mod cracked;
 mod edges;
 mod error;
+mod explode;
 mod extrude;
 mod faces;
 mod formats;
@@ -63,6 +64,7 @@ mod smooth;
 mod snap;
 mod source;
 mod triangulate;
+mod widening;
 #[cfg(feature = "files")]
 mod write;
 #[cfg(feature = "files")]

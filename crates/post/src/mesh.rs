@@ -1,6 +1,7 @@
 //! Meshes as they are written, and the check that a solid is one.
 
 use crate::slot::Slot;
+use fissure_scene::Vector;
 use rustc_hash::FxHashMap;
 
 /// A vertex. The drawing lies in the x–y plane, y up, z towards the viewer.
@@ -53,6 +54,15 @@ impl Mesh {
     /// An empty mesh.
     pub(crate) fn new(name: String, piece: u32, content: Content) -> Self {
         Self { name, piece, content, vertices: Vec::new(), triangles: [Vec::new(), Vec::new()] }
+    }
+
+    /// The mesh moved in the drawing plane [m].
+    pub(crate) fn moved(mut self, offset: Vector) -> Self {
+        for vertex in &mut self.vertices {
+            vertex.position[0] += offset.x;
+            vertex.position[1] += offset.y;
+        }
+        self
     }
 
     /// Triangles of one slot.

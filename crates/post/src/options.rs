@@ -1,7 +1,7 @@
 //! How a frame becomes meshes.
 
 use crate::error::PostError;
-use fissure_scene::{Cut, OutputSettings, Part, UpAxis, Walls};
+use fissure_scene::{Curve, Cut, OpeningSettings, OutputSettings, Part, UpAxis, Walls};
 
 /// Shortest edge of contours, as a part of the body: twice the distance at which readers merge vertices, because
 /// triangles without small angles need shorter ones than their outline has.
@@ -27,6 +27,10 @@ pub struct PostOptions {
     pub shortest_edge: f64,
     /// Length of the edges within caps, at most; none: as long as may be [m].
     pub cap_size: Option<f64>,
+    /// How wide cracks are shown; none: as they are.
+    pub opening: Option<OpeningSettings>,
+    /// How far fragments are shown apart over time; none: where they are.
+    pub explode: Option<Curve>,
     /// What to make.
     pub parts: Vec<Part>,
     /// Up axis of formats that do not fix it.
@@ -43,6 +47,8 @@ impl From<&OutputSettings> for PostOptions {
             walls: output.walls,
             cut: output.surfaces.cut,
             smoothing: output.surfaces.smoothing,
+            opening: output.opening.clone(),
+            explode: output.explode.clone(),
             shortest_edge: SHORTEST_EDGE,
             cap_size: output.surfaces.cap_size,
             parts: output.parts.clone(),

@@ -1,7 +1,7 @@
 //! The power-of-two grid on which all plane geometry is done.
 
 use crate::error::PostError;
-use fissure_scene::Point;
+use fissure_scene::{Point, Vector};
 use i_overlay::i_float::int::point::IntPoint;
 
 /// A place on the grid, in grid steps.
@@ -28,9 +28,10 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
-    /// The finest grid that is exact in `f32` for all `points` (all finite).
-    pub(crate) fn covering<'a>(points: impl IntoIterator<Item = &'a Point>) -> Self {
-        let reach = points.into_iter().fold(0.0_f64, |reach, p| reach.max(p.x.abs()).max(p.y.abs())) * (1.0 + MARGIN);
+    /// The finest grid that is exact in `f32` for all `points` (all finite), and `beyond` them by so much [m].
+    pub(crate) fn covering<'a>(points: impl IntoIterator<Item = &'a Point>, beyond: f64) -> Self {
+        let reach = points.into_iter().fold(0.0_f64, |reach, p| reach.max(p.x.abs()).max(p.y.abs()));
+        let reach = (reach + beyond) * (1.0 + MARGIN);
         // The smallest power of two at or above the reach; the step stays a normal f32 whatever the scene.
         let mut power = if reach > 0.0 { reach.log2().ceil() as i32 } else { 0 };
         power = power.clamp(f32::MIN_EXP + MANTISSA_BITS, f32::MAX_EXP - 1);
@@ -57,6 +58,11 @@ impl Grid {
         GridPoint::new((point.x / self.step).round() as i64, (point.y / self.step).round() as i64)
     }
 
+    /// The way between grid points nearest to `way` [m].
+    pub(crate) fn nearest(self, way: Vector) -> Vector {
+        way.map(|x| (x / self.step).round() * self.step)
+    }
+
     /// The place of a grid point [m], exact.
     pub(crate) fn place(self, point: GridPoint) -> Point {
         Point::new(point.x as f64 * self.step, point.y as f64 * self.step)
@@ -70,7 +76,7 @@ mod tests {
 
     #[test]
     fn the_step_follows_the_size_of_the_body() {
-        let step = |reach: f64| Grid::covering(&[Point::new(-reach, 0.3 * reach)]).step;
+        let step = |reach: f64| Grid::covering(&[Point::new(-reach, 0.3 * reach)], 0.0).step;
         assert_eq!(step(20.0), 2.0_f64.powi(-19));
         assert_eq!(step(15.9), 2.0_f64.powi(-20));
         assert_eq!(step(1e-3), 2.0_f64.powi(-33));
@@ -81,7 +87,7 @@ mod tests {
         /// Truth: the definition of f32.
         #[test]
         fn grid_points_are_exact_in_f32(reach in 1e-4..1e5_f64, x in -1.0002..1.0002_f64, y in -1.0..1.0_f64) {
-            let grid = Grid::covering(&[Point::new(reach, 0.0)]);
+            let grid = Grid::covering(&[Point::new(reach, 0.0)], 0.0);
             let there = grid.place(grid.snap(Point::new(x * reach, y * reach)));
             prop_assert_eq!(f64::from(there.x as f32), there.x);
             prop_assert_eq!(f64::from(there.y as f32), there.y);

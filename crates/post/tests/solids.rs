@@ -8,7 +8,7 @@ mod winding;
 use common::{Opened, frame, halves, options, scene, square};
 use fissure_plane::find_crossing;
 use fissure_post::{Content, Mesh, PostError, PostOptions, Slot, Vertex, post_frame};
-use fissure_scene::{CrackEnd, Cut, Frame, Part, Point, Region, Scene, Vector, Walls};
+use fissure_scene::{CrackEnd, Curve, Cut, Frame, OpeningSettings, Part, Point, Region, Scene, Vector, Walls};
 use proptest::prelude::*;
 use winding::covered_area;
 
@@ -532,6 +532,67 @@ proptest! {
     #[test]
     fn random_cracks_leave_solids(cracks in proptest::collection::vec(random_crack(), 1..4)) {
         agrees_with_brute_force(&cracks).map_err(TestCaseError::fail)?;
+    }
+}
+
+/// Settings that widen cracks by so much.
+fn widened(scene: &Scene, factor: f64, least: f64, falloff: f64) -> PostOptions {
+    let factor = Curve { points: vec![(0.0, factor)] };
+    PostOptions { opening: Some(OpeningSettings { factor, least, falloff }), shortest_edge: 0.0, ..options(scene) }
+}
+
+/// Truth: the area of the widths that the settings ask for, along a straight crack from an edge.
+#[test]
+fn a_widened_crack_takes_the_area_that_was_asked_for() {
+    let region = square(20.0);
+    let scene = scene(region.clone());
+    let rest: Vec<Point> = (0..=40).map(|i| Point::new(0.25 * f64::from(i), 10.0)).collect();
+    let opening: Vec<f64> = rest.iter().map(|p| 0.04 * (10.0 - p.x)).collect();
+    let crack = Opened::symmetric(rest.clone(), &opening, CrackEnd::Mouth, CrackEnd::Tip);
+    let frame = frame(&region, 4, &[crack]);
+    for (factor, least) in [(1.0, 0.0), (0.0, 0.0), (3.0, 0.0), (1.0, 0.3), (2.5, 0.3)] {
+        let options = widened(&scene, factor, least, 4.0);
+        let found = area(&post_frame(&scene, &frame, &options).unwrap().parts[0].1);
+        let width = |i: usize| factor * opening[i].max(least * ((10.0 - rest[i].x) / 4.0).clamp(0.0, 1.0).sqrt());
+        let taken: f64 = (0..40).map(|i| 0.125 * (width(i) + width(i + 1))).sum();
+        // Snapping moves each side by half a step.
+        let found = 400.0 - found;
+        assert!((found - taken).abs() < 1e-4, "{factor}, {least}: {found} for {taken}");
+    }
+}
+
+/// Truth: the volume, and the way of each half from the middle of both.
+#[test]
+fn fragments_shown_apart_keep_their_shape() {
+    let (scene, frame) = halves(20.0, [(0.0, Vector::zeros()), (0.3, Vector::new(3.0, 0.5))]);
+    let apart = PostOptions { explode: Some(Curve { points: vec![(0.0, 0.5)] }), ..options(&scene) };
+    let (still, moved) = (cracked(&scene, &frame), post_frame(&scene, &frame, &apart).unwrap().parts.remove(0).1);
+    let middle = Vector::new(5.0 + 15.0 + 3.0, 10.0 + 10.0 + 0.5) / 2.0;
+    let way = |own: Vector| 0.5 * (own - middle);
+    let ways = [way(Vector::new(5.0, 10.0)), way(Vector::new(18.0, 10.5))];
+    for ((before, after), way) in still.iter().zip(&moved).zip(ways) {
+        assert_eq!(before.triangles, after.triangles);
+        for (p, q) in before.vertices.iter().zip(&after.vertices) {
+            let found = Vector::new(q.position[0] - p.position[0], q.position[1] - p.position[1]);
+            assert!((found - way).norm() < 1e-5, "{found} instead of {way}");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 60, ..ProptestConfig::default() })]
+
+    /// However wide, `post_frame` finds that all are solids.
+    #[test]
+    fn random_cracks_of_any_width_leave_solids(
+        cracks in proptest::collection::vec(random_crack(), 1..4),
+        factor in 0.0..6.0_f64, least in 0.0..2.0_f64, falloff in 0.1..9.0_f64, explode in 0.0..3.0_f64,
+    ) {
+        let region = square(20.0);
+        let scene = scene(region.clone());
+        let explode = Some(Curve { points: vec![(0.0, explode)] });
+        let options = PostOptions { explode, ..widened(&scene, factor, least, falloff) };
+        post_frame(&scene, &frame(&region, 3, &cracks), &options).map_err(|e| TestCaseError::fail(e.to_string()))?;
     }
 }
 

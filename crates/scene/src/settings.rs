@@ -341,6 +341,22 @@ pub enum Walls {
     All,
 }
 
+/// How wide cracks are shown.
+///
+/// A crack that is open by δ along its normal is shown open by w + (f − 1) min(w, r) with w = max(δ, l): f is the
+/// factor, l the least width, smaller near a tip, and r two cells, or the least width if that is more, so that what has
+/// flown apart keeps its shape.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct OpeningSettings {
+    /// Factor on the opening over time; 1 is what was simulated.
+    pub factor: Curve,
+    /// Width that every crack has at least, before the factor, far from its tips [m].
+    pub least: f64,
+    /// How far from a tip the least width is reached [m]; it grows with the root of the distance, as the opening of a
+    /// crack in an elastic body does.
+    pub falloff: f64,
+}
+
 /// What to write.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct OutputSettings {
@@ -360,6 +376,13 @@ pub struct OutputSettings {
     /// How surfaces are made.
     #[serde(default)]
     pub surfaces: SurfaceSettings,
+    /// How wide cracks are shown; none: as they are.
+    #[serde(default)]
+    pub opening: Option<OpeningSettings>,
+    /// How far fragments are shown apart, over time: the way of each from the middle of its body, in parts of what it
+    /// is; none: where they are.
+    #[serde(default)]
+    pub explode: Option<Curve>,
 }
 
 /// Where the material is cut.

@@ -22,9 +22,12 @@ impl Scene {
         }
         scene.frames.last = scene.frames.first;
         scene.frames.playback = PLAYBACK;
-        let OutputSettings { thickness, formats, parts, up, smallest_fragment, walls, surfaces } = &mut scene.output;
+        let output = &mut scene.output;
+        let OutputSettings { thickness, formats, parts, up, smallest_fragment, walls, surfaces, opening, explode } =
+            output;
         (*thickness, *smallest_fragment) = (0.0, 0.0);
         (*up, *walls, *surfaces) = Default::default();
+        (*opening, *explode) = (None, None);
         formats.clear();
         parts.clear();
         let mut hasher = Sha256::new();

@@ -71,6 +71,8 @@ pub(crate) fn free_body(region: Region, spacing: f64) -> Scene {
             smallest_fragment: 0.0,
             walls: Default::default(),
             surfaces: Default::default(),
+            opening: None,
+            explode: None,
         },
     }
 }

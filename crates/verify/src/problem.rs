@@ -91,6 +91,8 @@ impl Problem {
                 smallest_fragment: 0.0,
                 walls: Default::default(),
                 surfaces: Default::default(),
+                opening: None,
+                explode: None,
             },
         };
         Self { scene }

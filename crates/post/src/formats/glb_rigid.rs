@@ -148,11 +148,7 @@ impl Span {
         let has_size = !corners.is_empty();
         let middle = if has_size { nalgebra::center(&low, &high) } else { Point::origin() };
         let tolerance = if has_size { TOLERANCE * (high - low).amax() } else { 0.0 };
-        let mut mesh = mesh.clone();
-        for vertex in &mut mesh.vertices {
-            vertex.position[0] -= middle.x;
-            vertex.position[1] -= middle.y;
-        }
+        let mesh = mesh.clone().moved(-middle.coords);
         let still = RigidMotion { angle: 0.0, shift: Vector::zeros() };
         Self { mesh, middle, particles, corners, tolerance, start, motions: vec![still], error: 0.0 }
     }

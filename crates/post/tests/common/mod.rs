@@ -73,6 +73,8 @@ pub fn scene(region: Region) -> Scene {
             smallest_fragment: 0.0,
             walls: Default::default(),
             surfaces: SurfaceSettings { smoothing: 0.0, ..Default::default() },
+            opening: None,
+            explode: None,
         },
     }
 }

@@ -3,7 +3,7 @@
 use super::{Ease, Switch};
 use crate::range::{
     ACUTE, AREA, BENDING, CELLS, CRITICAL_COMPRESSION, CRITICAL_STRETCH, DAMPING, FRACTION, FRAME, FRAME_RATE,
-    FRICTION, HARDENING, LENGTH, RELEASE_RATIO, SMOOTHING_CELLS, SPEED_FACTOR, TIME_STEP, pairs,
+    FRICTION, HARDENING, LENGTH, RELEASE_RATIO, SMOOTHING_CELLS, SPEED_FACTOR, TIME_STEP, WIDTH, pairs,
 };
 use crate::scene::Plasticity;
 use crate::settings::*;
@@ -221,6 +221,45 @@ pub struct OutputKeys {
     /// How far the paths of cracks that grew freely may be moved to be smooth, in cells. Default: 0.5; 0: not at all.
     #[schemars(transform = SMOOTHING_CELLS.bounds())]
     pub smoothing: f64,
+    /// How wide cracks are shown. Default: as they are.
+    pub opening: Option<OpeningKeys>,
+    /// How far fragments are shown apart. Default: where they are.
+    pub explode: Option<ExplodeKeys>,
+}
+
+/// How wide cracks are shown, whatever the simulation says.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct OpeningKeys {
+    /// Factor on the opening: 1 (default) is what was simulated, 0 closes all cracks. Openings above two cells grow no
+    /// further, so that fragments that fly apart keep their shape.
+    #[schemars(transform = SPEED_FACTOR.bounds())]
+    pub factor: Option<f64>,
+    /// The factor over time: [[frame, factor], ...] with rising frames; instead of `factor`.
+    #[schemars(transform = pairs(FRAME, SPEED_FACTOR))]
+    pub keyframes: Vec<[f64; 2]>,
+    /// How the factor goes from one keyframe to the next: `linear` (default), `in`, `out` or `in-out`.
+    pub ease: Ease,
+    /// Width in m that every crack has at least, before the factor. Default: 0.
+    #[schemars(transform = WIDTH.bounds())]
+    pub least: f64,
+    /// Distance in m from a tip at which the least width is reached. Default: eight cells.
+    #[schemars(transform = LENGTH.bounds())]
+    pub falloff: Option<f64>,
+}
+
+/// How far fragments are shown apart.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct ExplodeKeys {
+    /// Each fragment is moved away from the middle of its body by so many times its distance from it. Default: 0.
+    #[schemars(transform = SPEED_FACTOR.bounds())]
+    pub factor: Option<f64>,
+    /// The factor over time: [[frame, factor], ...] with rising frames; instead of `factor`.
+    #[schemars(transform = pairs(FRAME, SPEED_FACTOR))]
+    pub keyframes: Vec<[f64; 2]>,
+    /// How the factor goes from one keyframe to the next: `linear` (default), `in`, `out` or `in-out`.
+    pub ease: Ease,
 }
 
 impl Default for OutputKeys {
@@ -235,6 +274,8 @@ impl Default for OutputKeys {
             cap_size: None,
             cut: Cut::default(),
             smoothing: SMOOTHING,
+            opening: None,
+            explode: None,
         }
     }
 }

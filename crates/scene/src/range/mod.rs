@@ -59,6 +59,8 @@ pub(crate) const COORDINATE: Range = up_to(1e9, "m");
 pub(crate) const LENGTH: Range = within(1e-12, 1e9, "m");
 /// An area that may be nothing.
 pub(crate) const AREA: Range = not_negative(1e18, "m²");
+/// A width that may be nothing.
+pub(crate) const WIDTH: Range = not_negative(1e9, "m");
 /// An angle in degrees, any number of turns.
 pub(crate) const DEGREES: Range = up_to(1e6, "degrees");
 /// How far directions vary.

@@ -85,6 +85,13 @@ pub(crate) fn validate_schedule(path: &KeyPath, guide: &str, clock: Clock, point
     Ok(())
 }
 
+/// A factor over time that may be anything but negative. `what`: the keyframes of what, in words.
+pub(crate) fn validate_factor(path: &KeyPath, what: &str, clock: Clock, points: &[(f64, f64)]) -> Check {
+    clock.check(path, what, points)?;
+    let factor = |(i, &(_, factor)): (usize, &(f64, f64))| SPEED_FACTOR.check(path.then(i), "a factor", factor);
+    points.iter().enumerate().try_for_each(factor)
+}
+
 /// The factor on the highest speed: with `limit` it stays within the Rayleigh wave speed.
 pub(crate) fn validate_speed(path: &KeyPath, limit: f64, clock: Clock, points: &[(f64, f64)]) -> Check {
     clock.check(path, "the keyframes of the speed", points)?;

@@ -14,7 +14,7 @@ pub(crate) use cracks::leaves;
 #[cfg(feature = "load")]
 pub(crate) use {
     cracks::{MOST_GENERATIONS, no_tip, validate_strength},
-    curve::{Clock, validate_curve, validate_schedule, validate_speed},
+    curve::{Clock, validate_curve, validate_factor, validate_schedule, validate_speed},
     region::{overlap, validate_region},
     toughness::{outside, validate_corners},
 };

@@ -1,11 +1,11 @@
 //! Resolution, solver, growth, frames and output.
 
-use super::curve::{Clock, validate_speed};
+use super::curve::{Clock, validate_factor, validate_speed};
 use crate::fault::Check;
 use crate::fault::{KeyPath, SceneFault, short};
 use crate::range::{
     ACUTE, AREA, BENDING, CELLS, DAMPING, FRACTION, FRAME_RATE, FRAMES, FRICTION, ITEMS, LENGTH, PARTICLE_FRAMES,
-    PARTICLES, RELEASE_RATIO, SMOOTHING_CELLS, TIME, TIME_STEP, UNIT,
+    PARTICLES, RELEASE_RATIO, SMOOTHING_CELLS, TIME, TIME_STEP, UNIT, WIDTH,
 };
 use crate::scene::{Body, Scene};
 use crate::settings::Branching;
@@ -166,7 +166,18 @@ impl Scene {
         LENGTH.check(KeyPath::setting("output", "thickness"), "the thickness", o.thickness)?;
         AREA.check(KeyPath::setting("output", "smallest_fragment"), "the smallest fragment", o.smallest_fragment)?;
         SMOOTHING_CELLS.check(KeyPath::setting("output", "smoothing"), "`smoothing`", o.surfaces.smoothing)?;
-        o.surfaces.cap_size.map_or(Ok(()), |size| self.validate_cap_size(size))
+        o.surfaces.cap_size.map_or(Ok(()), |size| self.validate_cap_size(size))?;
+        if let Some(opening) = &o.opening {
+            let path = KeyPath::setting("output", "opening");
+            let points = &opening.factor.points;
+            validate_factor(&path.then("keyframes"), "the keyframes of the opening", Clock::Seconds, points)?;
+            WIDTH.check(path.then("least"), "the least width", opening.least)?;
+            LENGTH.check(path.then("falloff"), "the falloff", opening.falloff)?;
+        }
+        o.explode.as_ref().map_or(Ok(()), |curve| {
+            let path = KeyPath::setting("output", "explode").then("keyframes");
+            validate_factor(&path, "the keyframes of `explode`", Clock::Seconds, &curve.points)
+        })
     }
 
     /// Caps of more triangles than anybody opens are a slip of the pen.

@@ -66,6 +66,8 @@ pub(crate) fn plate(size: [f64; 2], cell_size: f64, frame_time: f64) -> Scene {
             smallest_fragment: 0.0,
             walls: Default::default(),
             surfaces: Default::default(),
+            opening: None,
+            explode: None,
         },
     }
 }

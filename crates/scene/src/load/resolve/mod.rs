@@ -109,7 +109,7 @@ impl<'d> Resolver<'d> {
             particle_spacing,
             cell_size,
             frames,
-            output: self.output(side)?,
+            output: self.output(side, &frames, cell_size)?,
             colliders: self.colliders(tolerance)?,
             cracks: Vec::new(),
             toughness: Vec::new(),

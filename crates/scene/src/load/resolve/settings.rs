@@ -3,12 +3,13 @@
 use super::motion::pairs;
 use super::{Resolved, Resolver};
 use crate::curve::Curve;
-use crate::document::TimeStep;
+use crate::document::{Ease, ExplodeKeys, OpeningKeys, TimeStep};
 use crate::fault::{KeyPath, SceneFault};
 use crate::presets::{solver_preset, updated_kernel};
+use crate::range::SPEED_FACTOR;
 use crate::scene::Material;
 use crate::settings::*;
-use crate::validate::{Clock, validate_speed};
+use crate::validate::{Clock, validate_factor, validate_speed};
 
 /// Division of tips, unless the scene says otherwise. Two tips that go on at a third of c_R need three times the energy
 /// of one at rest: 2/(1 − v/c_R).
@@ -87,7 +88,7 @@ impl<'d> Resolver<'d> {
         Ok(FrameSettings { first, last, rate, playback })
     }
 
-    pub(super) fn output(&self, side: f64) -> Resolved<OutputSettings> {
+    pub(super) fn output(&self, side: f64, frames: &FrameSettings, cell_size: f64) -> Resolved<OutputSettings> {
         let keys = &self.document.output;
         if keys.formats.is_empty() || keys.parts.is_empty() {
             let key = if keys.formats.is_empty() { "formats" } else { "parts" };
@@ -112,7 +113,54 @@ impl<'d> Resolver<'d> {
             smallest_fragment: keys.smallest_fragment,
             walls: keys.walls,
             surfaces: SurfaceSettings { cap_size: keys.cap_size, cut: keys.cut, smoothing: keys.smoothing },
+            opening: keys.opening.as_ref().map(|keys| opening(keys, frames, cell_size)).transpose()?,
+            explode: keys.explode.as_ref().map(|keys| explode(keys, frames)).transpose()?,
         })
+    }
+}
+
+/// From a tip to where the least width is reached, unless the scene says otherwise, in cells.
+const FALLOFF: f64 = 8.0;
+
+fn opening(keys: &OpeningKeys, frames: &FrameSettings, cell_size: f64) -> Resolved<OpeningSettings> {
+    let factor = Schedule { factor: keys.factor, keyframes: &keys.keyframes, ease: keys.ease, table: "opening" };
+    Ok(OpeningSettings {
+        factor: factor.curve(frames, 1.0)?,
+        least: keys.least,
+        falloff: keys.falloff.unwrap_or(FALLOFF * cell_size),
+    })
+}
+
+fn explode(keys: &ExplodeKeys, frames: &FrameSettings) -> Resolved<Curve> {
+    let ExplodeKeys { factor, keyframes, ease } = keys;
+    Schedule { factor: *factor, keyframes, ease: *ease, table: "explode" }.curve(frames, 0.0)
+}
+
+/// A factor of a table of `output`: one number, or keyframes.
+struct Schedule<'a> {
+    factor: Option<f64>,
+    keyframes: &'a [[f64; 2]],
+    ease: Ease,
+    table: &'a str,
+}
+
+impl Schedule<'_> {
+    /// As a curve over time; `usual` where nothing is given.
+    fn curve(&self, frames: &FrameSettings, usual: f64) -> Resolved<Curve> {
+        let path = |key: &str| KeyPath::setting("output", self.table).then(key);
+        let points = pairs(self.keyframes);
+        if points.is_empty() {
+            let factor = self.factor.unwrap_or(usual);
+            SPEED_FACTOR.check(path("factor"), "the factor", factor)?;
+            return Ok(Curve { points: vec![(0.0, factor)] });
+        }
+        if self.factor.is_some() {
+            let message = "both `factor` and `keyframes` are given";
+            return Err(SceneFault::new(path("factor"), message, "give one number, or keyframes"));
+        }
+        let what = format!("the keyframes of `{}`", self.table);
+        validate_factor(&path("keyframes"), &what, Clock::Frames, &points)?;
+        Ok(in_seconds(&self.ease.between(&points), frames))
     }
 }
 
