@@ -15,7 +15,7 @@ shots() {
         two-materials) echo "14,48" ;;
         painted) echo "20,32,48" ;;
         mud) echo "6,14,40" ;;
-        glass-impact) echo "8,14,22" ;;
+        glass-impact) echo "4,8,36" ;;
     esac
 }
 
