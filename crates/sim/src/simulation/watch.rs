@@ -3,10 +3,11 @@
 use super::Simulation;
 use crate::{SimulationError, foresight};
 
-/// Energy a run may have beyond what it was given, as a part of what was exchanged. Where forces are those of a grid
-/// that is laid anew in every step, kinetic and strain energy belong to moments half a step apart, and their sum
-/// ripples by some per cent where short waves run; a run that fails gains without bound.
-const ENERGY_TOLERANCE: f64 = 0.1;
+/// Energy a run may have beyond what it was given, as a part of what was exchanged. A sound run has less than 1e-3 in
+/// the total formulation, whose energies are all of one moment; one that fails gains without bound. Where forces are
+/// those of a grid that is laid anew in every step, kinetic and strain energy belong to moments half a step apart; of
+/// 130 plates under random loads, with all transfers, none had more than 1e-3 too much either.
+const ENERGY_TOLERANCE: f64 = 0.01;
 
 impl Simulation {
     /// Stops a run that has more energy than it was given.
@@ -63,7 +64,8 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use crate::Simulation;
     use crate::test_scenes::{free_body, rectangle, set_motion};
-    use fissure_scene::{Formulation, Kernel, Selection};
+    use fissure_plane::Vector;
+    use fissure_scene::{BoxSide, Curve, Formulation, Kernel, Load, LoadKind, Selection};
     use std::ops::ControlFlow;
 
     /// Truth: a plate on which nothing acts keeps its energy, whatever waves run in it and wherever in them frames
@@ -90,5 +92,31 @@ mod tests {
             ripple = ripple.max((sum / given - 1.0).abs());
         }
         assert!(worst < 1e-5 && ripple > 0.03, "{worst} {ripple}");
+    }
+    /// Truth: conservation of energy. What loads that start at once have done, at the longest steps, is in the plate.
+    #[test]
+    fn work_of_loads_is_what_a_plate_holds() {
+        for is_pressure in [false, true] {
+            let mut scene = free_body(rectangle([0.0, 0.0], [1.0, 1.0]), 0.0625);
+            let stress = 1e-4 * scene.materials[0].young_modulus;
+            let traction = LoadKind::Traction(Vector::new(0.5 * stress, stress));
+            let kind = if is_pressure { LoadKind::Pressure(stress) } else { traction };
+            scene.solver.formulation = Formulation::Total;
+            scene.solver.kernel = Kernel::Bilinear;
+            let selection = Selection::Edge { side: BoxSide::Top, bodies: None };
+            scene.loads.push(Load { selection, kind, curve: Curve::default() });
+            scene.frames.last = 30;
+            let largest = Simulation::new(&scene).unwrap().stable_time_step;
+            scene.frames.rate = 1.0 / (4.7 * largest);
+            let mut simulation = Simulation::new(&scene).unwrap();
+            let mut worst = 0.0_f64;
+            while !simulation.is_finished() {
+                simulation.advance(&mut |_| ControlFlow::Continue(())).unwrap();
+                let now = simulation.energies();
+                let held = now.kinetic + now.strain + simulation.solver.energy_of_lag();
+                worst = worst.max((held / now.external_work - 1.0).abs());
+            }
+            assert!(worst < 1e-3, "{is_pressure}: {worst}");
+        }
     }
 }

@@ -211,14 +211,13 @@ impl Total {
         self.external_work += work;
     }
 
-    /// Counts the work of loads and gravity over a step, by the displacements it will make: v Δt with the velocities of
-    /// the middle of the step.
-    fn count_work(&mut self, time: f64, time_step: f64) {
-        let mut power = self.loads.power(&self.scene.loads, time, &self.motion);
-        if self.scene.gravity != Vector::zeros() {
-            power += self.motion.power_of_gravity(self.lattice.mass(), self.scene.gravity);
+    /// Power of loads and gravity at the time `time` [s] with the velocities as they are [W/m].
+    fn power(&self, time: f64) -> f64 {
+        let of_loads = self.loads.power(&self.scene.loads, time, &self.motion);
+        if self.scene.gravity == Vector::zeros() {
+            return of_loads;
         }
-        self.external_work += power * time_step;
+        of_loads + self.motion.power_of_gravity(self.lattice.mass(), self.scene.gravity)
     }
 
     /// Lets go of the misfits that recuts have left, for a step of `time_step` [s].
@@ -267,6 +266,8 @@ impl Solver for Total {
         internal_forces(lattice, ties, &motion.displacement, &mut motion.force);
         self.loads.add_forces(&scene.loads, middle, motion);
         ties.share(&mut motion.force);
+        let power_before = self.power(middle);
+        let Self { scene, lattice, motion, ties, .. } = self;
         // v += Δt f/m, then what changes velocities by impulses.
         let kick = motion.kick(&lattice.inverse_mass, scene.gravity, self.damping, time_step);
         ties.apply_drag(lattice.mass(), motion, cracks, kick);
@@ -283,7 +284,8 @@ impl Solver for Total {
             self.touching.resolve_again(&mut self.motion);
         }
         self.external_work += self.touching.keep(kick, &self.motion);
-        self.count_work(middle, time_step);
+        // A force changes the kinetic energy by its impulse times the mean of the velocities before and after it.
+        self.external_work += 0.5 * (power_before + self.power(middle)) * kick;
         observe(&self.look(0.5 * time_step));
         // u += Δt v.
         self.motion.drift(time_step);
