@@ -198,7 +198,7 @@ def main(arguments):
         found = measure(take, folder)
         print(f"{folder.name[:15]:16}" + "".join(f"{found[column]:10.2g}" for column in COLUMNS), flush=True)
         failed |= found["open"] > 0 or found["volume"] > VOLUME or found["area"] > AREA
-    sys.exit(failed)
+    sys.exit(bool(failed))
 
 
 if __name__ == "__main__":
