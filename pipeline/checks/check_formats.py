@@ -11,7 +11,7 @@ FOLDER holds the files of `fissure post OUT/NAME.take --formats glb,obj,usda,vtk
   file of a frame by itself says the same.
 - VTK: its own reader reads surfaces with as many triangles as the manifest says, and of its volume within 1e-5 (which
   the reader sums in single precision); it and meshio read the particles of the take, to the bit; the list names the times.
-- OBJ: trimesh reads each object, watertight, and of the volume of the GLB file within 1e-6.
+- OBJ: trimesh reads each object, of the volume of the GLB file within 1e-6.
 - SVG: the fragments have the area of the manifest within 1e-6.
 """
 

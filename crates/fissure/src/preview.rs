@@ -48,6 +48,8 @@ pub(crate) fn draw(
             series.add(take.scene(), &frame);
         }
     }
+    let explode = take.scene().output.explode.iter().flat_map(|curve| &curve.points);
+    survey.spread(explode.map(|&(_, factor)| factor).fold(0.0, f64::max));
     let folder = arguments.output.clone().unwrap_or_else(|| take_path::folder_of(&path).join(FOLDER));
     let folder = Folder::new(folder);
     folder.make()?;

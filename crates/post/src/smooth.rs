@@ -1,5 +1,6 @@
 //! Paths of cracks, smoothed for the eye: tips that turn a little at every step leave a zigzag as wide as a cell.
 
+use fissure_plane::distance_to_segment;
 use fissure_scene::{BranchKind, CrackFrame, Fragments, Frame, Guide, Line, Point, Scene, Vector};
 use std::borrow::Cow;
 
@@ -9,8 +10,8 @@ const DEVIATION: f64 = 1.0;
 /// How far the average reaches, in standard deviations, and how many places it takes on each side.
 const REACH: f64 = 2.5;
 const PLACES: usize = 10;
-/// Points this near to a drawn corner are that corner, in cells.
-const AT_CORNER: f64 = 0.02;
+/// Points this near to a drawn line are on it, in cells.
+const ON_LINE: f64 = 0.02;
 /// The direction of a face at a point is that between its points so far off on both sides, in cells.
 const TANGENT: f64 = 0.5;
 /// Turns of the two faces against each other between which each begins to be smoothed along its own direction [rad].
@@ -26,7 +27,7 @@ pub(crate) struct SmoothCracks<'a> {
 
 impl<'a> SmoothCracks<'a> {
     /// Moves the points of cracks by `tolerance` cells at most; 0 leaves them where they are. Both faces move alike, so
-    /// that they still match. What was drawn stays: corners of cracks and guides; so do tips, ends, and places where
+    /// that they still match. What was drawn stays: cracks, and what follows guides; so do tips, ends, and places where
     /// other cracks end or cross.
     pub(crate) fn new(scene: &Scene, frame: &'a Frame, fragments: &Fragments, tolerance: f64) -> Self {
         let none = |crack: &CrackFrame| vec![Vector::zeros(); crack.rest.len()];
@@ -35,7 +36,7 @@ impl<'a> SmoothCracks<'a> {
         if tolerance <= 0.0 {
             return smooth;
         }
-        let corners = drawn_corners(scene);
+        let lines = drawn_lines(scene);
         let mut is_crossed: Vec<Vec<bool>> = frame.cracks.iter().map(|c| vec![false; c.rest.len()]).collect();
         for edge in fragments.list().iter().flat_map(|f| f.boundaries.iter().flatten()) {
             if let (Line::Above(crack) | Line::Below(crack), true) = (edge.line, edge.span != [0.0, 1.0]) {
@@ -45,10 +46,10 @@ impl<'a> SmoothCracks<'a> {
         for (i, crack) in frame.cracks.iter().enumerate() {
             let rest = &crack.rest;
             let last = rest.len().saturating_sub(1);
-            let is_corner = |p: Point| corners.iter().any(|c| (c - p).norm() <= AT_CORNER * scene.cell_size);
+            let is_drawn = |p: Point| is_on(&lines, p, ON_LINE * scene.cell_size);
             let is_joint = |k: usize| (k > 0 && rest[k - 1] == rest[k]) || (k < last && rest[k + 1] == rest[k]);
             let is_fixed: Vec<bool> = (0..rest.len())
-                .map(|k| k == 0 || k == last || is_crossed[i][k] || is_joint(k) || is_corner(rest[k]))
+                .map(|k| k == 0 || k == last || is_crossed[i][k] || is_joint(k) || is_drawn(rest[k]))
                 .collect();
             if is_fixed.iter().all(|fixed| *fixed) {
                 continue;
@@ -61,22 +62,27 @@ impl<'a> SmoothCracks<'a> {
     }
 }
 
-/// The corners of all drawn cracks and guides [m].
-fn drawn_corners(scene: &Scene) -> Vec<Point> {
-    fn of_guide(guide: &Guide, corners: &mut Vec<Point>) {
-        corners.extend(&guide.points);
+/// The points of all drawn cracks and guides [m].
+fn drawn_lines(scene: &Scene) -> Vec<&[Point]> {
+    fn of_guide<'a>(guide: &'a Guide, lines: &mut Vec<&'a [Point]>) {
+        lines.push(&guide.points);
         for branch in &guide.branches {
             if let BranchKind::Begins { guide, .. } = &branch.kind {
-                of_guide(guide, corners);
+                of_guide(guide, lines);
             }
         }
     }
-    let mut corners = Vec::new();
+    let mut lines = Vec::new();
     for crack in &scene.cracks {
-        corners.extend(&crack.points);
-        [&crack.start_guide, &crack.end_guide].into_iter().flatten().for_each(|guide| of_guide(guide, &mut corners));
+        lines.push(crack.points.as_slice());
+        [&crack.start_guide, &crack.end_guide].into_iter().flatten().for_each(|guide| of_guide(guide, &mut lines));
     }
-    corners
+    lines
+}
+
+/// Whether a point lies on one of some lines, `most` [m] off at most.
+fn is_on(lines: &[&[Point]], point: Point, most: f64) -> bool {
+    lines.iter().flat_map(|line| line.windows(2)).any(|w| distance_to_segment(point, w[0], w[1]) <= most)
 }
 
 /// From each point to the weighted mean of the path around it, `most` [m] long at most. The mean reaches as far to both
@@ -180,6 +186,18 @@ mod tests {
         assert!([0, 200, 399].iter().all(|&k| moved[k] == Vector::zeros()));
         let limited = offsets(&rest, &is_fixed, 1.0, 0.05);
         assert!(limited.iter().all(|v| v.norm() <= 0.05 + 1e-12) && limited.iter().any(|v| v.norm() > 0.049));
+    }
+
+    /// Truth: the drawing. A path that follows a guide has points anywhere on it, not only at its corners.
+    #[test]
+    fn all_of_a_guided_path_is_drawn() {
+        let guide = [Point::new(0.0, 0.0), Point::new(1.0, 1.0), Point::new(0.0, 2.0)];
+        for k in 0..=40 {
+            let arc = 0.05 * f64::from(k);
+            let on = Point::new(1.0 - (1.0 - arc).abs(), arc);
+            assert!(is_on(&[&guide], on, 1e-9) && !is_on(&[&guide], on + Vector::new(0.1, 0.0), 0.05), "{on}");
+        }
+        assert!(!is_on(&[], guide[0], 1.0));
     }
 
     /// Truth: a rigid motion of each face moves its smoothed path along, and faces that touch still do.

@@ -51,6 +51,7 @@ pub fn draw_frame(
     let solids: Vec<&Mesh> = of(Part::Cracked).collect();
     let colliders: Vec<&Mesh> = of(Part::Collider).collect();
     let field = CapField::new(frame, scene.particle_spacing, options.coloring, survey.scale());
+    let field = field.filter(|_| is_in_place(scene, frame));
     let mut picture = surfaces(&solids, &colliders, field.as_ref(), &layout, options)?;
     let z = 0.5 * thickness;
     lines(&mut picture, scene, frame, &solids, &layout, options, z);
@@ -64,14 +65,21 @@ pub fn draw_frame(
     match detail {
         Detail::Full => {
             cover(&mut picture, f64::from(layout.height) - layout.footer, f64::from(layout.height));
-            tip_marks::draw(&mut picture, &frame.tips, z, &layout, options.theme);
+            let has_tips = is_in_place(scene, frame) && tip_marks::are_labelled(&frame.tips);
+            if is_in_place(scene, frame) {
+                tip_marks::draw(&mut picture, &frame.tips, z, &layout, options.theme);
+            }
             legend::header(&mut picture, scene, frame, &layout, options);
-            let has_tips = tip_marks::are_labelled(&frame.tips);
             legend::footer(&mut picture, survey, &layout, options, Some(solids.len()), has_tips);
         }
         Detail::Tile => legend::caption(&mut picture, frame, &layout, options),
     }
     Ok(picture)
+}
+
+/// Whether the meshes lie where the material is, so that what the frame tells can be drawn over them.
+fn is_in_place(scene: &Scene, frame: &Frame) -> bool {
+    scene.output.explode.as_ref().is_none_or(|curve| curve.value(frame.time) == 0.0)
 }
 
 /// Solids and colliders, lit.
@@ -142,9 +150,12 @@ fn lines(
         path.move_to(x as f32, y as f32);
         path.line_to(to_x as f32, to_y as f32);
     }
-    frame.cracks.iter().for_each(|crack| crack_lines::add(&mut cracks, crack, z, projection));
+    let mut inclusions = None;
+    if is_in_place(scene, frame) {
+        frame.cracks.iter().for_each(|crack| crack_lines::add(&mut cracks, crack, z, projection));
+        inclusions = inclusions::edges(scene, frame, z, projection);
+    }
     let width = (0.09 * layout.letters) as f32;
-    let inclusions = inclusions::edges(scene, frame, z, projection);
     let drawn = [(outer.finish(), theme.edge()), (inclusions, theme.inclusion()), (cracks.finish(), theme.crack())];
     let stroke = Stroke { width, line_cap: LineCap::Round, line_join: LineJoin::Round, ..Stroke::default() };
     for (path, color) in drawn {

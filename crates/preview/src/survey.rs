@@ -47,6 +47,15 @@ impl Survey {
         }
     }
 
+    /// Makes room for fragments that are moved away from the middle of their body by up to `factor` times their way
+    /// from it.
+    pub fn spread(&mut self, factor: f64) {
+        if let Some([low, high]) = &mut self.corners {
+            let way = (*high - *low) * (0.5 * factor);
+            (*low, *high) = (*low - way, *high + way);
+        }
+    }
+
     /// Two corners of the box that is in view [m]; a square of 1 m where there is nothing.
     pub(crate) fn corners(&self) -> [Point; 2] {
         let [low, high] = self.corners.unwrap_or([Point::new(-0.5, -0.5), Point::new(0.5, 0.5)]);
