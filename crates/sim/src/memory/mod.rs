@@ -13,7 +13,7 @@ use fissure_plane::{Matrix, Point, Vector};
 use fissure_scene::{Formulation, OnDistortion, Scene};
 
 /// What the program takes without a scene [bytes]: `fissure run` on bodies of a few particles.
-const PROGRAM: f64 = 10.5 * MEBIBYTE;
+const PROGRAM: f64 = 13.5 * MEBIBYTE;
 
 /// What the division keeps for each cell near a crack: its entry in the map, and a list of a few segments [bytes].
 const NEAR_CELL: f64 = 128.0;
