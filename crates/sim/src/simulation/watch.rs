@@ -109,12 +109,18 @@ mod tests {
             let largest = Simulation::new(&scene).unwrap().stable_time_step;
             scene.frames.rate = 1.0 / (4.7 * largest);
             let mut simulation = Simulation::new(&scene).unwrap();
-            let mut worst = 0.0_f64;
-            while !simulation.is_finished() {
+            let mut next = || {
                 simulation.advance(&mut |_| ControlFlow::Continue(())).unwrap();
                 let now = simulation.energies();
-                let held = now.kinetic + now.strain + simulation.solver.energy_of_lag();
-                worst = worst.max((held / now.external_work - 1.0).abs());
+                (now.external_work, now.kinetic + now.strain + simulation.solver.energy_of_lag())
+            };
+            // Begun with half a step, the leapfrog lacks the energy of that.
+            let first = next();
+            assert!(first.1 < first.0 && first.1 > 0.98 * first.0, "{is_pressure}: {first:?}");
+            let mut worst = 0.0_f64;
+            for _ in 1..29 {
+                let (work, held) = next();
+                worst = worst.max(((held - first.1) - (work - first.0)).abs() / work);
             }
             assert!(worst < 1e-3, "{is_pressure}: {worst}");
         }

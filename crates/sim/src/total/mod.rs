@@ -81,15 +81,20 @@ pub(crate) struct Total {
     colliders: Colliders,
     contacts: Contacts,
     touching: Touching,
-    /// Work done by loads, supports and colliders so far [J/m].
+    /// Work done by loads, supports and colliders so far, to the moment of the velocities [J/m].
     external_work: f64,
+    /// Power of loads and gravity in the last step, with the velocities after it [W/m].
+    power_of_loads: f64,
     /// What each support has done so far.
     reactions: Vec<Reaction>,
     steps_since_check: u32,
 }
 
 /// What of a solver cannot be laid anew from the scene and the cracks; last the work and the reactions so far.
-type Saved = (Layout, Motion, Probes, Ties, LastImpulses, (f64, Vec<Reaction>));
+type Saved = (Layout, Motion, Probes, Ties, LastImpulses, Done);
+
+/// The work done so far and the power of loads, and what each support has done.
+type Done = ([f64; 2], Vec<Reaction>);
 
 /// Steps between two checks that everything is still finite and in range.
 const STEPS_BETWEEN_CHECKS: u32 = 8;
@@ -108,7 +113,7 @@ impl Total {
         let probes = Probes::new(scene, &lattice, cracks);
         let motion = Motion::initial(scene, &lattice);
         let ties = Ties::new(&lattice, &motion, cracks);
-        let done = (0.0, vec![Reaction::default(); scene.supports.len()]);
+        let done = ([0.0; 2], vec![Reaction::default(); scene.supports.len()]);
         Self::of_parts(scene, lattice, (motion, probes, ties, LastImpulses::default(), done), cracks)
     }
 
@@ -130,7 +135,7 @@ impl Total {
         probes.check(fields, scene, cracks)?;
         ties.check(fields, lattice.grid.len(), cracks.len())?;
         impulses.check()?;
-        saved::finite("the work done so far", [&done.0])?;
+        saved::finite("the work done so far", &done.0)?;
         Reaction::check(&done.1, scene.supports.len())?;
         motion.resize(fields);
         lattice.set_layout(layout);
@@ -146,7 +151,7 @@ impl Total {
     fn of_parts(
         scene: &Scene,
         lattice: Lattice,
-        (motion, probes, ties, impulses, done): (Motion, Probes, Ties, LastImpulses, (f64, Vec<Reaction>)),
+        (motion, probes, ties, impulses, done): (Motion, Probes, Ties, LastImpulses, Done),
         cracks: &Cracks,
     ) -> Result<Self, SimulationError> {
         let friction = scene.solver.crack_contact.then_some(scene.solver.crack_friction);
@@ -162,7 +167,8 @@ impl Total {
             motion,
             probes,
             ties,
-            external_work: done.0,
+            external_work: done.0[0],
+            power_of_loads: done.0[1],
             reactions: done.1,
             steps_since_check: 0,
         })
@@ -218,6 +224,11 @@ impl Total {
             return of_loads;
         }
         of_loads + self.motion.power_of_gravity(self.lattice.mass(), self.scene.gravity)
+    }
+
+    /// What loads do from the moment of the velocities to that of the displacements [J/m].
+    fn work_of_lag(&self) -> f64 {
+        self.motion.lag() * self.power_of_loads
     }
 
     /// Lets go of the misfits that recuts have left, for a step of `time_step` [s].
@@ -284,8 +295,10 @@ impl Solver for Total {
             self.touching.resolve_again(&mut self.motion);
         }
         self.external_work += self.touching.keep(kick, &self.motion);
-        // A force changes the kinetic energy by its impulse times the mean of the velocities before and after it.
-        self.external_work += 0.5 * (power_before + self.power(middle)) * kick;
+        // A force changes the kinetic energy by its impulse times the mean of the velocities before and after it. From
+        // rest the impulse is half as long; what moves is moved over the whole step.
+        self.power_of_loads = self.power(middle);
+        self.external_work += 0.5 * (power_before + self.power_of_loads) * time_step;
         observe(&self.look(0.5 * time_step));
         // u += Δt v.
         self.motion.drift(time_step);
@@ -335,6 +348,8 @@ impl Solver for Total {
     }
 
     fn stop(&mut self) {
+        self.external_work += self.work_of_lag();
+        self.power_of_loads = 0.0;
         self.motion.stop();
     }
 
@@ -360,7 +375,7 @@ impl Snapshot for Total {
         SolverEnergies {
             kinetic: self.kinetic_energy(),
             strain: snapshot::strain_energy(&self.lattice, &self.ties, &self.motion),
-            external_work: self.external_work,
+            external_work: self.external_work + self.work_of_lag(),
         }
     }
 
@@ -369,7 +384,7 @@ impl Snapshot for Total {
     }
 
     fn energy_of_lag(&self) -> f64 {
-        snapshot::energy_of_lag(&self.lattice, &self.ties, &self.motion)
+        snapshot::energy_of_lag(&self.lattice, &self.ties, &self.motion) + self.work_of_lag()
     }
 
     fn kinetic_energy(&self) -> f64 {
@@ -389,7 +404,7 @@ impl Snapshot for Total {
             particles: snapshot::places_and_motions(&self.lattice, &self.motion),
             cracks: self.crack_frames(cracks),
             outlines: self.outline_frames(),
-            external_work: self.external_work,
+            external_work: self.external_work + self.work_of_lag(),
             reactions: self.reactions.clone(),
         })
     }
@@ -401,7 +416,7 @@ impl Snapshot for Total {
             &self.probes,
             &self.ties,
             self.touching.last(),
-            (self.external_work, &self.reactions),
+            ([self.external_work, self.power_of_loads], &self.reactions),
         );
         saved::to_bytes(&saved)
     }
