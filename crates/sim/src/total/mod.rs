@@ -83,8 +83,9 @@ pub(crate) struct Total {
     touching: Touching,
     /// Work done by loads, supports and colliders so far, to the moment of the velocities [J/m].
     external_work: f64,
-    /// Power of loads and gravity in the last step, with the velocities after it [W/m].
+    /// Power of loads in the last step, and of gravity, with the velocities after it [W/m].
     power_of_loads: f64,
+    power_of_gravity: f64,
     /// What each support has done so far.
     reactions: Vec<Reaction>,
     steps_since_check: u32,
@@ -93,8 +94,8 @@ pub(crate) struct Total {
 /// What of a solver cannot be laid anew from the scene and the cracks; last the work and the reactions so far.
 type Saved = (Layout, Motion, Probes, Ties, LastImpulses, Done);
 
-/// The work done so far and the power of loads, and what each support has done.
-type Done = ([f64; 2], Vec<Reaction>);
+/// The work done so far, the power of loads and that of gravity, and what each support has done.
+type Done = ([f64; 3], Vec<Reaction>);
 
 /// Steps between two checks that everything is still finite and in range.
 const STEPS_BETWEEN_CHECKS: u32 = 8;
@@ -113,7 +114,8 @@ impl Total {
         let probes = Probes::new(scene, &lattice, cracks);
         let motion = Motion::initial(scene, &lattice);
         let ties = Ties::new(&lattice, &motion, cracks);
-        let done = ([0.0; 2], vec![Reaction::default(); scene.supports.len()]);
+        let falling = motion.power_of_gravity(lattice.mass(), scene.gravity);
+        let done = ([0.0, 0.0, falling], vec![Reaction::default(); scene.supports.len()]);
         Self::of_parts(scene, lattice, (motion, probes, ties, LastImpulses::default(), done), cracks)
     }
 
@@ -169,6 +171,7 @@ impl Total {
             ties,
             external_work: done.0[0],
             power_of_loads: done.0[1],
+            power_of_gravity: done.0[2],
             reactions: done.1,
             steps_since_check: 0,
         })
@@ -217,18 +220,9 @@ impl Total {
         self.external_work += work;
     }
 
-    /// Power of loads and gravity at the time `time` [s] with the velocities as they are [W/m].
-    fn power(&self, time: f64) -> f64 {
-        let of_loads = self.loads.power(&self.scene.loads, time, &self.motion);
-        if self.scene.gravity == Vector::zeros() {
-            return of_loads;
-        }
-        of_loads + self.motion.power_of_gravity(self.lattice.mass(), self.scene.gravity)
-    }
-
     /// What loads do from the moment of the velocities to that of the displacements [J/m].
     fn work_of_lag(&self) -> f64 {
-        self.motion.lag() * self.power_of_loads
+        self.motion.lag() * (self.power_of_loads + self.power_of_gravity)
     }
 
     /// Lets go of the misfits that recuts have left, for a step of `time_step` [s].
@@ -277,8 +271,7 @@ impl Solver for Total {
         internal_forces(lattice, ties, &motion.displacement, &mut motion.force);
         self.loads.add_forces(&scene.loads, middle, motion);
         ties.share(&mut motion.force);
-        let power_before = self.power(middle);
-        let Self { scene, lattice, motion, ties, .. } = self;
+        let power_before = self.loads.power(&scene.loads, middle, motion) + self.power_of_gravity;
         // v += Δt f/m, then what changes velocities by impulses.
         let kick = motion.kick(&lattice.inverse_mass, scene.gravity, self.damping, time_step);
         ties.apply_drag(lattice.mass(), motion, cracks, kick);
@@ -297,8 +290,12 @@ impl Solver for Total {
         self.external_work += self.touching.keep(kick, &self.motion);
         // A force changes the kinetic energy by its impulse times the mean of the velocities before and after it. From
         // rest the impulse is half as long; what moves is moved over the whole step.
-        self.power_of_loads = self.power(middle);
-        self.external_work += 0.5 * (power_before + self.power_of_loads) * time_step;
+        self.power_of_loads = self.loads.power(&self.scene.loads, middle, &self.motion);
+        if self.scene.gravity != Vector::zeros() {
+            // Nothing but a step changes momentum, so that what is after this one is before the next.
+            self.power_of_gravity = self.motion.power_of_gravity(self.lattice.mass(), self.scene.gravity);
+        }
+        self.external_work += 0.5 * (power_before + self.power_of_loads + self.power_of_gravity) * time_step;
         observe(&self.look(0.5 * time_step));
         // u += Δt v.
         self.motion.drift(time_step);
@@ -349,7 +346,7 @@ impl Solver for Total {
 
     fn stop(&mut self) {
         self.external_work += self.work_of_lag();
-        self.power_of_loads = 0.0;
+        (self.power_of_loads, self.power_of_gravity) = (0.0, 0.0);
         self.motion.stop();
     }
 
@@ -416,7 +413,7 @@ impl Snapshot for Total {
             &self.probes,
             &self.ties,
             self.touching.last(),
-            ([self.external_work, self.power_of_loads], &self.reactions),
+            ([self.external_work, self.power_of_loads, self.power_of_gravity], &self.reactions),
         );
         saved::to_bytes(&saved)
     }
