@@ -10,20 +10,47 @@ use fissure_scene::*;
 #[test]
 fn frames_come_back_bit_for_bit() {
     for frame in [frame(3), Frame::default()] {
-        let bytes = frame_to_bytes(&frame).unwrap();
-        assert_eq!(bytes, frame_to_bytes(&frame.clone()).unwrap());
-        let back = frame_from_bytes(&bytes).unwrap();
-        assert_eq!(back, frame);
-        // Also the sign of zero, which `==` does not see.
-        assert_eq!(frame_to_bytes(&back).unwrap(), bytes);
-        for cut in [0, 7, bytes.len() / 2, bytes.len() - 1] {
-            assert!(frame_from_bytes(&bytes[..cut]).is_err());
+        let at_rest = ParticlesAtRest::of(&frame.particles);
+        let kept_apart = ParticlesAtRest::from_bytes(&at_rest.to_bytes().unwrap()).unwrap();
+        assert_eq!(kept_apart, at_rest);
+        for known in [None, Some(&kept_apart)] {
+            let bytes = frame_to_bytes(&frame, known).unwrap();
+            assert_eq!(bytes, frame_to_bytes(&frame.clone(), known).unwrap());
+            let back = frame_from_bytes(&bytes, known).unwrap();
+            assert_eq!(back, frame);
+            // Also the sign of zero, which `==` does not see.
+            assert_eq!(frame_to_bytes(&back, known).unwrap(), bytes);
+            for cut in [0, 7, bytes.len() / 2, bytes.len() - 1] {
+                assert!(frame_from_bytes(&bytes[..cut], known).is_err());
+            }
         }
     }
     let mut uneven = frame(1);
     uneven.particles.body.pop();
     let fault = FrameFault::UnequalLengths { part: FramePart::Particles, lengths: vec![5, 4, 5, 5, 5, 5, 5, 5] };
-    assert_eq!(frame_to_bytes(&uneven), Err(FrameFileError::Frame(fault)));
+    assert_eq!(frame_to_bytes(&uneven, None), Err(FrameFileError::Frame(fault)));
+}
+
+/// What particles are at rest is written once; a frame that has others says so itself, and so does one that differs in
+/// the last bit.
+#[test]
+fn what_never_changes_is_written_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut frames: Vec<Frame> = (1..=4).map(frame).collect();
+    let x = &mut frames[2].particles.rest[4].x;
+    *x = f64::from_bits(x.to_bits() + 1);
+    frames[3].particles = ParticleFrame::default();
+    let mut writer = TakeWriter::open(&Folder::new(folder.path()), &scene(), provenance(), 9).unwrap().writer;
+    frames.iter().for_each(|frame| writer.write_frame(frame, None).unwrap());
+    let take = Take::open(folder.path()).unwrap();
+    for frame in &frames {
+        assert_eq!(take.frame(frame.number).unwrap(), *frame);
+    }
+    let has_rest = |number: i64| {
+        let bytes = std::fs::read(folder.path().join(format!("frame.{number:04}.safetensors"))).unwrap();
+        bytes.windows(14).any(|window| window == b"particles.rest")
+    };
+    assert_eq!([1, 2, 3, 4].map(has_rest), [false, false, true, true]);
 }
 
 /// Writes the frames of `numbers` into a new take; the last one with its state.
@@ -47,7 +74,7 @@ fn a_take_is_read_as_it_was_written() {
     assert_eq!((take.scene(), take.frame_numbers()), (&scene(), vec![1, 2, 3, 4]));
     assert_eq!(take.frame(3).unwrap(), frame(3));
     assert!(!take.is_complete() && take.remarks().unwrap().is_empty());
-    assert_eq!(listing(folder.path()).len(), 4 + 6);
+    assert_eq!(listing(folder.path()).len(), 4 + 7);
     let energy = std::fs::read_to_string(folder.path().join("energy.csv")).unwrap();
     assert_eq!(energy.lines().count(), 5);
 }
@@ -261,8 +288,8 @@ fn damage_is_told() {
 
     let manifest = folder.path().join("manifest.json");
     let text = std::fs::read_to_string(&manifest).unwrap();
-    std::fs::write(&manifest, text.replacen("\"version\": 3", "\"version\": 99", 1)).unwrap();
-    told(Take::open(folder.path()).unwrap_err(), &["manifest.json", "version 99", "version 3", "--overwrite"]);
+    std::fs::write(&manifest, text.replacen("\"version\": 4", "\"version\": 99", 1)).unwrap();
+    told(Take::open(folder.path()).unwrap_err(), &["manifest.json", "version 99", "versions 3 and 4", "--overwrite"]);
     std::fs::write(&manifest, text.replacen("\"seed\": 7", "\"seed\": 8", 1)).unwrap();
     told(Take::open(folder.path()).unwrap_err(), &["manifest.json", "checksum", "--overwrite"]);
     std::fs::write(&manifest, "{\"name\": \"a web page\"}").unwrap();

@@ -207,9 +207,10 @@ impl Bench {
     }
 
     fn run_frame(&self, input: &[u8]) -> Result<(), Refusal> {
-        let frame = frame_from_bytes(input).map_err(|e| e.to_string())?;
+        let frame = frame_from_bytes(input, None).map_err(|e| e.to_string())?;
         // Equal frames give equal bytes, whatever the file had besides.
-        let again = frame_to_bytes(&frame).and_then(|bytes| frame_from_bytes(&bytes)).map_err(|e| e.to_string())?;
+        let again =
+            frame_to_bytes(&frame, None).and_then(|bytes| frame_from_bytes(&bytes, None)).map_err(|e| e.to_string())?;
         let sample = &self.samples[0];
         post_frame(&sample.scene, &again, &everything(&sample.scene)).map_err(|e| e.to_string())?;
         Ok(())
@@ -236,7 +237,7 @@ impl Bench {
             if steps < STEPS { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         };
         simulation.advance(&mut watch).map_err(|e| e.to_string())?;
-        frame_to_bytes(&simulation.frame()).map_err(|e| e.to_string())?;
+        frame_to_bytes(&simulation.frame(), None).map_err(|e| e.to_string())?;
         Ok(())
     }
 }

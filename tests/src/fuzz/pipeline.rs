@@ -176,9 +176,9 @@ pub(super) fn run(folder: &Path, input: &[u8]) -> Result<(), Refusal> {
     };
     for _ in 0..FRAMES {
         let frame = simulation.frame();
-        let bytes = frame_to_bytes(&frame).map_err(|e| e.to_string())?;
-        let again = frame_from_bytes(&bytes).map_err(|e| format!("a frame of ours is refused: {e}"))?;
-        if frame_to_bytes(&again).map_err(|e| e.to_string())? != bytes {
+        let bytes = frame_to_bytes(&frame, None).map_err(|e| e.to_string())?;
+        let again = frame_from_bytes(&bytes, None).map_err(|e| format!("a frame of ours is refused: {e}"))?;
+        if frame_to_bytes(&again, None).map_err(|e| e.to_string())? != bytes {
             return Err(unsound("a frame comes back as another"));
         }
         let meshes = post_frame(&scene, &frame, &everything(&scene)).map_err(|e| e.to_string())?;

@@ -94,7 +94,7 @@ pub(super) fn samples(folder: &Path) -> Vec<Sample> {
         let text = std::fs::read_to_string(take.join("manifest.json")).expect("a manifest");
         let manifest: serde_json::Value = serde_json::from_str(&text).expect("a manifest");
         Sample {
-            frame: frame_to_bytes(&frames[2]).expect("a frame"),
+            frame: frame_to_bytes(&frames[2], None).expect("a frame"),
             state: simulation.save().expect("a state"),
             scene,
             take,

@@ -1,5 +1,6 @@
 //! What can go wrong with a take.
 
+use super::Manifest;
 use super::tensors::FrameFileError;
 use fissure_files::FileError;
 use std::path::{Path, PathBuf};
@@ -19,15 +20,19 @@ pub enum TakeError {
         /// Why not.
         cause: String,
     },
-    /// The take is of a version that this program does not read.
-    #[error("`{}` is a take of version {found}, this program reads version {ours}", path.display())]
+    /// The take is of a version that this program does not read, or does not go on with.
+    #[error(
+        "`{}` is a take of version {found}, this program reads the versions {} and {} and goes on with {}",
+        path.display(),
+        Manifest::OLDEST,
+        Manifest::VERSION,
+        Manifest::VERSION
+    )]
     Version {
-        /// The manifest.
+        /// The take or its manifest.
         path: PathBuf,
         /// Its version.
         found: u64,
-        /// The version that this program reads.
-        ours: u64,
     },
     /// The manifest or the list of frames is not as it was written.
     #[error("`{}` is damaged: {cause}", path.display())]

@@ -45,8 +45,10 @@ struct Head {
 impl Manifest {
     /// Name of the format.
     pub const FORMAT: &str = "fissure-take";
-    /// Version of the format that this program reads and writes.
-    pub const VERSION: u64 = 3;
+    /// Version of the format that this program writes.
+    pub const VERSION: u64 = 4;
+    /// The oldest version that it reads: there each frame says itself what its particles are at rest.
+    pub const OLDEST: u64 = 3;
 
     pub(super) fn new(scene: &Scene, provenance: Provenance) -> Self {
         Self {
@@ -81,8 +83,8 @@ impl Manifest {
         if head.format != Self::FORMAT {
             return Err(not_a_take(format!("its {NAME} is of the format `{}`", head.format.escape_debug())));
         }
-        if head.version != Self::VERSION {
-            return Err(TakeError::Version { path, found: head.version, ours: Self::VERSION });
+        if !(Self::OLDEST..=Self::VERSION).contains(&head.version) {
+            return Err(TakeError::Version { path, found: head.version });
         }
         let text = std::str::from_utf8(&bytes).map_err(|error| TakeError::damaged(&path, error))?;
         if !PAGE.holds(text) {

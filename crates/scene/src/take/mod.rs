@@ -3,6 +3,7 @@
 //! ```text
 //! take/manifest.json            format, version, tool, seed, the whole resolved scene; written once
 //! take/frames.jsonl             a line per frame: number, time, files and table rows with their checksums; grows only
+//! take/particles.safetensors    what the particles of all frames are at rest
 //! take/frame.0001.safetensors   one frame; names and shapes of its tensors: see `tensors`
 //! take/tips.csv                 one row per crack tip and frame
 //! take/energy.csv               one row per frame
@@ -36,5 +37,5 @@ pub use opening::{Opened, Start};
 pub use read::Take;
 pub use remark::Remark;
 pub use state::SavedState;
-pub use tensors::{FrameFileError, frame_from_bytes, frame_to_bytes};
+pub use tensors::{FrameFileError, ParticlesAtRest, frame_from_bytes, frame_to_bytes};
 pub use write::TakeWriter;

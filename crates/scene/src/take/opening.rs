@@ -55,6 +55,9 @@ impl TakeWriter {
             return Ok(Opened { writer, start: Start::First, remarks: Vec::new() });
         }
         let mut manifest = Manifest::read(folder)?;
+        if manifest.version != Manifest::VERSION {
+            return Err(TakeError::Version { path: folder.path().into(), found: manifest.version });
+        }
         if manifest.scene_hash != scene.hash || manifest.seed != provenance.seed {
             return Err(TakeError::OtherScene { path: folder.path().into() });
         }

@@ -54,8 +54,9 @@ impl Table {
             Some(length) => Ok(folder.write(self.name, &text[..length]).map(|()| false)?),
             None => {
                 let mut text = self.head.to_owned();
+                let at_rest = frame_file::read_at_rest(folder, entries)?;
                 for entry in entries {
-                    text += &(self.rows)(&frame_file::read(folder, entry)?);
+                    text += &(self.rows)(&frame_file::read(folder, entry, at_rest.as_ref())?);
                 }
                 folder.write(self.name, text.as_bytes())?;
                 Ok(true)

@@ -1,8 +1,8 @@
 //! Writing a take.
 
 use super::list::{self, FileEntry, FrameEntry};
-use super::tensors::is_frame;
-use super::{Manifest, Provenance, TakeError, frame_to_bytes, state, tables};
+use super::tensors::is_ours;
+use super::{Manifest, ParticlesAtRest, Provenance, TakeError, frame_file, frame_to_bytes, state, tables};
 use crate::frame::Frame;
 use crate::scene::Scene;
 use fissure_files::Folder;
@@ -12,6 +12,8 @@ use fissure_files::Folder;
 pub struct TakeWriter {
     folder: Folder,
     entries: Vec<FrameEntry>,
+    /// What the particles of the first frame are at rest; none until it is needed.
+    at_rest: Option<ParticlesAtRest>,
 }
 
 impl TakeWriter {
@@ -29,8 +31,8 @@ impl TakeWriter {
             Some(true) => {
                 // The manifest goes last: until then the folder is known for a take.
                 folder.remove(state::NAME)?;
-                for name in folder.names()?.iter().filter(|name| is_frame_name(name)) {
-                    if folder.read(name)?.is_some_and(|bytes| is_frame(&bytes)) {
+                for name in folder.names()?.iter().filter(|name| is_frame_name(name) || *name == frame_file::AT_REST) {
+                    if folder.read(name)?.is_some_and(|bytes| is_ours(&bytes)) {
                         folder.remove(name)?;
                     }
                 }
@@ -64,7 +66,7 @@ impl TakeWriter {
 
     /// Goes on after the frames of `entries`.
     pub(super) fn with(folder: &Folder, entries: Vec<FrameEntry>) -> Self {
-        Self { folder: folder.clone(), entries }
+        Self { folder: folder.clone(), entries, at_rest: None }
     }
 
     /// Writes a frame, its rows of the tables, and the line that lists it; when this returns it outlives a power cut. A
@@ -77,41 +79,63 @@ impl TakeWriter {
     /// When the folder cannot be written; the frames so far stay readable. When the frame is not the one that is
     /// listed.
     pub fn write_frame(&mut self, frame: &Frame, state: Option<&[u8]>) -> Result<(), TakeError> {
-        let bytes = frame_to_bytes(frame).map_err(|cause| TakeError::BadFrame { number: frame.number, cause })?;
-        let name = list::file_name(frame.number);
-        let file = FileEntry::new(&name, &bytes);
+        let contents = self.contents(frame)?;
+        let files: Vec<_> = contents.iter().map(|(name, bytes)| FileEntry::new(name, bytes)).collect();
         if let Ok(at) = self.entries.binary_search_by_key(&frame.number, |entry| entry.number) {
-            self.compare(at, &file, &bytes)?;
+            self.compare(at, &files, &contents)?;
             return state.map_or(Ok(()), |state| self.write_state(state, frame.number));
         }
         if let Some(last) = self.newest().filter(|last| last.checked_add(1) != Some(frame.number)) {
             return Err(TakeError::OutOfOrder { number: frame.number, last });
         }
-        // One that is there but not listed was written just before a death.
-        if self.folder.read(&name)?.is_some_and(|there| !there.is_empty() && !is_frame(&there)) {
-            return Err(TakeError::Foreign { path: self.folder.place(&name)? });
+        for (name, _) in &contents {
+            // One that is there but not listed was written just before a death.
+            if self.folder.read(name)?.is_some_and(|there| !there.is_empty() && !is_ours(&there)) {
+                return Err(TakeError::Foreign { path: self.folder.place(name)? });
+            }
         }
-        self.folder.write(&name, &bytes)?;
+        contents.iter().try_for_each(|(name, bytes)| self.folder.write(name, bytes))?;
         self.folder.sync()?;
         if let Some(state) = state {
             self.write_state(state, frame.number)?;
         }
         let rows = tables::append(&self.folder, frame)?;
-        let entry = FrameEntry { number: frame.number, time: frame.time, files: vec![file], rows };
+        let entry = FrameEntry { number: frame.number, time: frame.time, files, rows };
         list::append(&self.folder, &entry)?;
         self.entries.push(entry);
         Ok(())
     }
 
-    /// Holds a frame that was computed again against the one that is listed, and mends its file where that was changed.
-    fn compare(&self, at: usize, file: &FileEntry, bytes: &[u8]) -> Result<(), TakeError> {
+    /// The files of a frame, each with its bytes, that of the frame itself first. The first frame has one more, of what
+    /// its particles are at rest, which frames with the same particles then leave out.
+    fn contents(&mut self, frame: &Frame) -> Result<Vec<(String, Vec<u8>)>, TakeError> {
+        let bad = |cause| TakeError::BadFrame { number: frame.number, cause };
+        let is_first = self.entries.first().is_none_or(|first| first.number == frame.number);
+        if is_first {
+            self.at_rest = Some(ParticlesAtRest::of(&frame.particles));
+        } else if self.at_rest.is_none() {
+            self.at_rest = frame_file::read_at_rest(&self.folder, &self.entries)?;
+        }
+        let bytes = frame_to_bytes(frame, self.at_rest.as_ref()).map_err(bad)?;
+        let mut contents = vec![(list::file_name(frame.number), bytes)];
+        if let Some(at_rest) = self.at_rest.as_ref().filter(|_| is_first) {
+            contents.push((frame_file::AT_REST.to_owned(), at_rest.to_bytes().map_err(bad)?));
+        }
+        Ok(contents)
+    }
+
+    /// Holds a frame that was computed again against the one that is listed, and mends its files where these were
+    /// changed.
+    fn compare(&self, at: usize, files: &[FileEntry], contents: &[(String, Vec<u8>)]) -> Result<(), TakeError> {
         let entry = &self.entries[at];
-        if entry.files.first() != Some(file) {
+        if entry.files != files {
             return Err(TakeError::OtherFrame { path: self.folder.path().into(), number: entry.number });
         }
-        if self.folder.read(&file.name)?.as_deref() != Some(bytes) {
-            self.folder.write(&file.name, bytes)?;
-            self.folder.sync()?;
+        for (name, bytes) in contents {
+            if self.folder.read(name)?.as_deref() != Some(bytes) {
+                self.folder.write(name, bytes)?;
+                self.folder.sync()?;
+            }
         }
         Ok(())
     }

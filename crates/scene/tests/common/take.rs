@@ -33,7 +33,8 @@ pub fn frame(number: i64) -> Frame {
             id: (0..n as u32).collect(),
             body: vec![0; n],
             piece: vec![u32::MAX; n],
-            rest: points(n),
+            // The same in every frame.
+            rest: (0..n).map(|i| Point::new(0.1 * i as f64, -0.0)).collect(),
             position: points(n),
             velocity: vectors(points(n)),
             deformation_gradient: matrices(points(n)),

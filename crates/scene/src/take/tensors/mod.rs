@@ -1,5 +1,8 @@
 //! A frame as safetensors: what each tensor is called, its shape and type.
 //!
+//! What particles are at rest is in a file of its own, for all frames that have the same: `particles.id`, `.body` and
+//! `.rest`. A frame that has others holds these three itself.
+//!
 //! `n` particles; `k` rings with `m` points in all, `offset[i]..offset[i + 1]` those of ring `i`; likewise cracks; `t`
 //! tips; `c` colliders. Numbers are little-endian, matrices row by row.
 //!
@@ -20,18 +23,24 @@
 //! | `energies.kinetic`, `.strain`, `.external_work`, `.crack` | [1] f64 | J/m |
 //! | `colliders.position`, `.angle` | [c, 2], \[c\] f64 | m, rad |
 
+mod at_rest;
 mod error;
 mod read;
 mod write;
 
+pub use at_rest::ParticlesAtRest;
 pub use error::FrameFileError;
 pub use read::frame_from_bytes;
 pub use write::frame_to_bytes;
 
 use crate::frame::{TipRecord, TipState};
 
-/// What the file says it is.
-const FORMAT: &str = "fissure-frame 1";
+/// What the file of a frame says it is.
+const FRAME_FORMAT: &str = "fissure-frame 2";
+/// What the file of the particles at rest says it is.
+const AT_REST_FORMAT: &str = "fissure-particles 1";
+/// What both begin with, in every version.
+const OURS: &str = "fissure-";
 
 /// Order in which tip states are numbered.
 const STATES: [TipState; 6] = [
@@ -72,9 +81,9 @@ fn tip_numbers(t: &TipRecord) -> [f64; 10] {
     ]
 }
 
-/// Whether the bytes say that they are a frame, whole or not: the first entry of the header of a safetensors file is
-/// what the file is.
-pub(super) fn is_frame(bytes: &[u8]) -> bool {
-    let start = format!("{{\"__metadata__\":{{\"format\":\"{FORMAT}\"");
+/// Whether the bytes say that they are of a take, of whatever version, whole or not: the first entry of the header of a
+/// safetensors file is what the file is.
+pub(super) fn is_ours(bytes: &[u8]) -> bool {
+    let start = format!("{{\"__metadata__\":{{\"format\":\"{OURS}");
     bytes.get(8..).is_some_and(|header| header.starts_with(start.as_bytes()))
 }

@@ -1,23 +1,27 @@
 //! From tensors to a frame.
 
-use super::{FrameFileError, STATES, TIP_NUMBERS};
+use super::{FrameFileError, ParticlesAtRest, STATES, TIP_NUMBERS};
 use crate::frame::*;
 use fissure_plane::{Matrix, Point, Vector};
 use safetensors::tensor::{Dtype, SafeTensors};
 
-/// A frame from the bytes of a safetensors file, bit for bit as it was.
+/// A frame from the bytes of a safetensors file, bit for bit as it was. `at_rest`: what its particles are at rest, if
+/// the file does not say so itself.
 ///
 /// # Errors
 /// When the file is cut off, lacks a tensor, one has an unexpected type or length, or the frame does not pass
 /// [`Frame::check`].
-pub fn frame_from_bytes(bytes: &[u8]) -> Result<Frame, FrameFileError> {
-    let file = SafeTensors::deserialize(bytes).map_err(|error| FrameFileError::NotWhole(error.to_string()))?;
-    let file = Reader(file);
+pub fn frame_from_bytes(bytes: &[u8], at_rest: Option<&ParticlesAtRest>) -> Result<Frame, FrameFileError> {
+    let file = Reader::new(bytes)?;
+    let ParticlesAtRest { id, body, rest } = match at_rest {
+        Some(known) if !file.has(ParticlesAtRest::ID) => known.clone(),
+        _ => ParticlesAtRest::read(&file)?,
+    };
     let particles = ParticleFrame {
-        id: file.u32s("particles.id")?,
-        body: file.u32s("particles.body")?,
+        id,
+        body,
         piece: file.u32s("particles.piece")?,
-        rest: file.points("particles.rest")?,
+        rest,
         position: file.points("particles.position")?,
         velocity: file.vectors("particles.velocity")?,
         deformation_gradient: file.matrices("particles.deformation_gradient")?,
@@ -65,9 +69,19 @@ fn same_length<T>(what: &'static str, values: Vec<T>, length: usize) -> Result<V
     if values.len() == length { Ok(values) } else { Err(FrameFileError::Lengths(what)) }
 }
 
-struct Reader<'d>(SafeTensors<'d>);
+/// The tensors of a file.
+pub(super) struct Reader<'d>(SafeTensors<'d>);
 
-impl Reader<'_> {
+impl<'d> Reader<'d> {
+    pub(super) fn new(bytes: &'d [u8]) -> Result<Self, FrameFileError> {
+        let file = SafeTensors::deserialize(bytes).map_err(|error| FrameFileError::NotWhole(error.to_string()))?;
+        Ok(Self(file))
+    }
+
+    fn has(&self, name: &str) -> bool {
+        self.0.tensor(name).is_ok()
+    }
+
     fn values<const N: usize, T>(
         &self,
         name: &str,
@@ -96,10 +110,10 @@ impl Reader<'_> {
     fn number(&self, name: &str) -> Result<f64, FrameFileError> {
         self.one(name, Dtype::F64, f64::from_le_bytes)
     }
-    fn u32s(&self, name: &str) -> Result<Vec<u32>, FrameFileError> {
+    pub(super) fn u32s(&self, name: &str) -> Result<Vec<u32>, FrameFileError> {
         self.values(name, Dtype::U32, u32::from_le_bytes)
     }
-    fn points(&self, name: &str) -> Result<Vec<Point>, FrameFileError> {
+    pub(super) fn points(&self, name: &str) -> Result<Vec<Point>, FrameFileError> {
         Ok(self.groups(name)?.into_iter().map(|p: [f64; 2]| Point::from(p)).collect())
     }
     fn vectors(&self, name: &str) -> Result<Vec<Vector>, FrameFileError> {

@@ -1,6 +1,6 @@
 //! From a frame to tensors.
 
-use super::{FORMAT, FrameFileError, STATES, TIP_NUMBERS, tip_numbers};
+use super::{FRAME_FORMAT, FrameFileError, ParticlesAtRest, STATES, TIP_NUMBERS, tip_numbers};
 use crate::frame::{CrackEnd, End, Frame};
 use fissure_plane::{Matrix, Point, Vector};
 use safetensors::tensor::{Dtype, View, serialize};
@@ -28,8 +28,9 @@ impl View for &Tensor {
     }
 }
 
+/// The tensors of a file, in the order in which they are added.
 #[derive(Default)]
-struct Tensors(Vec<(String, Tensor)>);
+pub(super) struct Tensors(Vec<(String, Tensor)>);
 
 impl Tensors {
     fn add(&mut self, name: impl Into<String>, dtype: Dtype, shape: Vec<usize>, bytes: Vec<u8>) {
@@ -41,13 +42,13 @@ impl Tensors {
     fn numbers(&mut self, name: impl Into<String>, values: impl ExactSizeIterator<Item = f64>) {
         self.f64s(name, vec![values.len()], values);
     }
-    fn u32s(&mut self, name: impl Into<String>, values: impl ExactSizeIterator<Item = u32>) {
+    pub(super) fn u32s(&mut self, name: impl Into<String>, values: impl ExactSizeIterator<Item = u32>) {
         self.add(name, Dtype::U32, vec![values.len()], values.flat_map(u32::to_le_bytes).collect());
     }
     fn i64s(&mut self, name: impl Into<String>, shape: Vec<usize>, values: impl Iterator<Item = i64>) {
         self.add(name, Dtype::I64, shape, values.flat_map(i64::to_le_bytes).collect());
     }
-    fn points<'a>(&mut self, name: impl Into<String>, points: impl Iterator<Item = &'a Point>) {
+    pub(super) fn points<'a>(&mut self, name: impl Into<String>, points: impl Iterator<Item = &'a Point>) {
         let values: Vec<f64> = points.flat_map(|p| [p.x, p.y]).collect();
         self.f64s(name, vec![values.len() / 2, 2], values.into_iter());
     }
@@ -68,23 +69,32 @@ impl Tensors {
         }));
         self.i64s(name, vec![offsets.len()], offsets.into_iter());
     }
+
+    /// The file that says it is of `format`.
+    pub(super) fn into_bytes(self, format: &str) -> Result<Vec<u8>, FrameFileError> {
+        // One entry only: the header keeps the order of a hash map.
+        let about = HashMap::from([("format".to_owned(), format.to_owned())]);
+        serialize(self.0.iter().map(|(name, tensor)| (name.as_str(), tensor)), Some(about))
+            .map_err(|error| FrameFileError::NotWritten(error.to_string()))
+    }
 }
 
-/// A frame as the bytes of a safetensors file. Equal frames give equal bytes.
+/// A frame as the bytes of a safetensors file, without what its particles are at rest where that is what `at_rest`
+/// says. Equal frames give equal bytes.
 ///
 /// # Errors
 /// When the frame does not pass [`Frame::check`], or is too large for the format.
-pub fn frame_to_bytes(frame: &Frame) -> Result<Vec<u8>, FrameFileError> {
+pub fn frame_to_bytes(frame: &Frame, at_rest: Option<&ParticlesAtRest>) -> Result<Vec<u8>, FrameFileError> {
     frame.check()?;
     let mut t = Tensors::default();
     t.i64s("frame.number", vec![1], std::iter::once(frame.number));
     t.numbers("frame.time", std::iter::once(frame.time));
 
     let p = &frame.particles;
-    t.u32s("particles.id", p.id.iter().copied());
-    t.u32s("particles.body", p.body.iter().copied());
+    if !at_rest.is_some_and(|known| known.is_of(p)) {
+        ParticlesAtRest::of(p).add_to(&mut t);
+    }
     t.u32s("particles.piece", p.piece.iter().copied());
-    t.points("particles.rest", p.rest.iter());
     t.points("particles.position", p.position.iter());
     t.vectors("particles.velocity", p.velocity.iter());
     t.matrices("particles.deformation_gradient", &p.deformation_gradient);
@@ -129,11 +139,7 @@ pub fn frame_to_bytes(frame: &Frame) -> Result<Vec<u8>, FrameFileError> {
     t.numbers("colliders.angle", frame.colliders.iter().map(|pose| pose.angle));
     t.vectors("supports.force", frame.supports.iter().map(|support| &support.force));
     t.numbers("supports.work", frame.supports.iter().map(|support| support.work));
-
-    // One entry only: the header keeps the order of a hash map.
-    let about = HashMap::from([("format".to_owned(), FORMAT.to_owned())]);
-    serialize(t.0.iter().map(|(name, tensor)| (name.as_str(), tensor)), Some(about))
-        .map_err(|error| FrameFileError::NotWritten(error.to_string()))
+    t.into_bytes(FRAME_FORMAT)
 }
 
 fn end_number(end: CrackEnd) -> i64 {
