@@ -157,15 +157,30 @@ pub(crate) struct TakeArguments {
     /// Folder to write into [default: out/NAME, NAME being the scene's name].
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) output: Option<PathBuf>,
-    /// Also write what is measured at the tips at every look, between frames too: NAME.looks.csv.
-    #[arg(long)]
-    pub(crate) looks: bool,
+    /// Also write tables, finer than frames, beside the take: looks (J and K of each tip at every look), contours (the
+    /// same over five radii), energy (the budget), supports (load over displacement); without `=` all of them.
+    #[arg(long, value_name = "WHICH,..", value_enum, value_delimiter = ',', num_args = 0..=1, require_equals = true,
+          default_missing_value = "looks,contours,energy,supports", hide_possible_values = true)]
+    pub(crate) tables: Vec<TableName>,
     /// Start afresh: remove the take and the meshes of this scene's name that are in the output folder.
     #[arg(long)]
     pub(crate) overwrite: bool,
     /// Threads to compute with [default: one per core]. The results do not depend on it.
     #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
+}
+
+/// A table beside the take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TableName {
+    /// J and K of each tip at every look.
+    Looks,
+    /// The same over five radii.
+    Contours,
+    /// The energy budget.
+    Energy,
+    /// Load over displacement of supports.
+    Supports,
 }
 
 /// What meshes to write.

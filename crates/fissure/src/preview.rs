@@ -11,7 +11,7 @@ use crate::report::Report;
 use crate::workers::{Work, stream};
 use crate::{take_path, threads};
 use fissure_files::{Folder, Lock};
-use fissure_preview::{Coloring, PreviewOptions, Series, Survey, Theme, View};
+use fissure_preview::{Coloring, PreviewOptions, Series, Survey, Table, Theme, View};
 use fissure_scene::Take;
 use std::sync::{Mutex, PoisonError};
 
@@ -48,6 +48,9 @@ pub(crate) fn draw(
             series.add(take.scene(), &frame);
         }
     }
+    if arguments.html {
+        take_up_tables(&mut series, &take, &Folder::new(take_path::folder_of(&path)), report)?;
+    }
     let explode = take.scene().output.explode.iter().flat_map(|curve| &curve.points);
     survey.spread(explode.map(|&(_, factor)| factor).fold(0.0, f64::max));
     let folder = arguments.output.clone().unwrap_or_else(|| take_path::folder_of(&path).join(FOLDER));
@@ -76,6 +79,21 @@ pub(crate) fn draw(
     let written = pictures.finish(&series)?;
     report.note(&format!("wrote {written} into `{}`", folder.path().display()));
     Ok(Exit::Done)
+}
+
+/// Takes the curves of the tables that the run has written beside its take, where there are any.
+fn take_up_tables(series: &mut Series, take: &Take, folder: &Folder, report: &Report) -> Result<(), Failure> {
+    for table in Table::ALL {
+        let name = format!("{}.{}.csv", take.scene().name, table.word());
+        let Some(bytes) = folder.read(&name)? else { continue };
+        if let Err(error) = series.take_up(take.scene(), table, &String::from_utf8_lossy(&bytes)) {
+            report.warn(&format!(
+                "`{}` is not used, {error}; curves are those of the frames. `fissure run --tables` writes it",
+                folder.place(&name)?.display()
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// What is to be made.

@@ -7,10 +7,10 @@ use crate::folder::OutputFolder;
 use crate::frame_set::FrameSet;
 use crate::interrupt::Interrupt;
 use crate::invocation;
-use crate::looks::Looks;
 use crate::moved::Moved;
 use crate::progress::SimulationProgress;
 use crate::report::Report;
+use crate::tables::Tables;
 use fissure_files::{Lock, LockError};
 use fissure_post::Manifest;
 use fissure_scene::{Frame, Opened, Provenance, Scene, Start, TakeError, TakeWriter};
@@ -42,8 +42,8 @@ pub(crate) struct Solve {
     last: i64,
     /// Whether that frame is not in the take yet: nobody has seen it.
     fresh: bool,
-    /// The table of looks, where it is wanted.
-    looks: Option<Looks>,
+    /// The tables that are wanted.
+    tables: Tables,
     /// No other process writes to the take as long as this lives.
     _lock: Lock,
 }
@@ -75,10 +75,10 @@ pub(crate) fn open(
         (writer, start)
     };
     let take = folder.take.path().display();
-    let solve = |simulation: Simulation, writer, fresh| {
+    let solve = |mut simulation: Simulation, writer, fresh| {
         let newest = simulation.frame_number();
-        let looks = arguments.looks.then(|| Looks::open(&folder.root, &scene.name, newest, simulation.time()));
-        Ok(Some(Solve { simulation, writer, newest, last, fresh, looks: looks.transpose()?, _lock: lock }))
+        let tables = Tables::open(&arguments.tables, &folder.root, &mut simulation)?;
+        Ok(Some(Solve { simulation, writer, newest, last, fresh, tables, _lock: lock }))
     };
     match start {
         Start::Complete => {
@@ -159,12 +159,10 @@ impl Solve {
         let mut formulation = self.simulation.formulation();
         let mut moved = Moved::default();
         while self.newest < self.last {
-            let (next, looks) = (self.newest + 1, &mut self.looks);
+            let (next, tables) = (self.newest + 1, &mut self.tables);
             let mut watch = |simulation: &Simulation, now: &fissure_sim::Progress| {
                 progress.step(next, now);
-                if let Some(looks) = looks {
-                    looks.step(simulation, next);
-                }
+                tables.step(simulation, next, now);
                 if interrupt.is_set() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             };
             let goes_on = if interrupt.is_set() { Ok(false) } else { self.simulation.advance_observed(&mut watch) };
@@ -188,9 +186,7 @@ impl Solve {
             if due {
                 state_written = Instant::now();
             }
-            if let Some(looks) = &mut self.looks {
-                looks.frame()?;
-            }
+            self.tables.frame()?;
             self.newest = frame.number;
             progress.frame(frame.number, &frame.tips);
             moved.frame(&frame.tips);

@@ -40,7 +40,7 @@ pub use coloring::Coloring;
 pub use draw::{Detail, draw_frame};
 pub use options::{PreviewOptions, SIZES};
 pub use origin::{Kind, is_ours};
-pub use page::{PackedFrame, Page, Series, page};
+pub use page::{PackedFrame, Page, Series, Table, TableError, page};
 pub use picture::{EncodeError, Picture};
 pub use projection::View;
 pub use sheet::{SHEET_FRAMES, contact_sheet, sheet_frames, tile_options};

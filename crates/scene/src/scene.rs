@@ -317,6 +317,14 @@ pub struct Support {
     pub curve: Curve,
 }
 
+impl Support {
+    /// How far it has moved the material along x and y from the start to `time` [m]; 0 where it lets it go.
+    pub fn displacement(&self, time: f64) -> [f64; 2] {
+        let way = if time > 0.0 { self.curve.mean(0.0, time) * time } else { 0.0 };
+        self.velocity.map(|velocity| velocity.unwrap_or(0.0) * way)
+    }
+}
+
 /// A rigid obstacle.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Collider {

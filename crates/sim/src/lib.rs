@@ -112,6 +112,7 @@ pub use material::constitutive::{
 };
 pub use material::elastic::Elastic;
 pub use simulation::{Counts, Estimate, Progress, Simulation, Stage};
+pub use tip::contours::ContourReading;
 pub use tip::stress_intensity::{StressIntensity, crack_speed_factors, universal_function};
 pub use tip::williams::{TipField, moving_tip_fields, williams_fields};
 pub use wide::widest_instructions;

@@ -2,9 +2,11 @@
 
 mod packed_frame;
 mod series;
+mod table_series;
 
 pub use packed_frame::PackedFrame;
 pub use series::Series;
+pub use table_series::{Table, TableError};
 
 use crate::origin::TOOL;
 use crate::theme::Theme;

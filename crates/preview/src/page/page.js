@@ -166,8 +166,9 @@ function quantity(value, unit) {
   return `${Number((value / 1000 ** power).toPrecision(3))} ${prefixes[power]}${unit}`;
 }
 
-/** A plot of curves { name, color, at, values }; `at` are numbers in the list of times. A click goes to that time. */
-function plot(title, unit, curves) {
+/** A plot of curves { name, color, x, y, time } over `across`, the unit of x. Over time a line shows the frame, and a click
+ * goes there; over anything else a dot on each curve does. */
+function plot(title, unit, curves, across = "s") {
   const figure = document.createElement("figure"), caption = document.createElement("figcaption");
   const canvas = document.createElement("canvas");
   figure.append(canvas, caption);
@@ -178,11 +179,14 @@ function plot(title, unit, curves) {
     label.style.color = curve.color;
     caption.append(label);
   });
-  const times = facts.series.time;
-  const first = times[0], span = times[times.length - 1] - first || 1;
-  const values = curves.flatMap((curve) => curve.values);
-  const low = values.reduce((a, b) => Math.min(a, b), 0), high = values.reduce((a, b) => Math.max(a, b), 0) || 1;
-  const margin = { left: 6, right: 6, top: 16, bottom: 6 };
+  const least = (values, from) => values.reduce((a, b) => Math.min(a, b), from);
+  const most = (values, from) => values.reduce((a, b) => Math.max(a, b), from);
+  const isOverTime = across === "s";
+  const along = isOverTime ? facts.series.energies.time : curves.flatMap((curve) => curve.x);
+  const first = least(along, along[0]), span = most(along, along[0]) - first || 1;
+  const values = curves.flatMap((curve) => curve.y);
+  const low = least(values, 0), high = most(values, 0), height_of = high - low || 1;
+  const margin = { left: 6, right: 6, top: 16, bottom: isOverTime ? 6 : 16 };
   const draw = () => {
     const scale = window.devicePixelRatio, width = canvas.clientWidth, height = canvas.clientHeight;
     canvas.width = width * scale;
@@ -190,8 +194,9 @@ function plot(title, unit, curves) {
     const paper = canvas.getContext("2d");
     paper.scale(scale, scale);
     const style = getComputedStyle(document.documentElement);
-    const x = (time) => margin.left + (time - first) / span * (width - margin.left - margin.right);
-    const y = (value) => height - margin.bottom - (value - low) / (high - low) * (height - margin.top - margin.bottom);
+    const faint = style.getPropertyValue("--faint");
+    const x = (value) => margin.left + (value - first) / span * (width - margin.left - margin.right);
+    const y = (value) => height - margin.bottom - (value - low) / height_of * (height - margin.top - margin.bottom);
     const line = (points, color, thickness) => {
       paper.beginPath();
       points.forEach(([px, py], i) => (i ? paper.lineTo(px, py) : paper.moveTo(px, py)));
@@ -200,15 +205,29 @@ function plot(title, unit, curves) {
       paper.stroke();
     };
     line([[margin.left, y(0)], [width - margin.right, y(0)]], style.getPropertyValue("--line"), 1);
-    const now = x(facts.frames[state.frame].time);
-    line([[now, margin.top], [now, height - margin.bottom]], style.getPropertyValue("--faint"), 1);
-    curves.forEach((curve) =>
-      line(curve.at.map((at, i) => [x(times[at]), y(curve.values[i])]), curve.color, curve.thickness || 1.5));
-    paper.fillStyle = style.getPropertyValue("--faint");
+    const now = facts.frames[state.frame].time;
+    if (isOverTime) line([[x(now), margin.top], [x(now), height - margin.bottom]], faint, 1);
+    for (const curve of curves) {
+      line(curve.x.map((value, i) => [x(value), y(curve.y[i])]), curve.color, curve.thickness || 1.5);
+      const at = curve.time ? curve.time.findLastIndex((time) => time <= now) : -1;
+      if (at < 0) continue;
+      paper.beginPath();
+      paper.arc(x(curve.x[at]), y(curve.y[at]), 3, 0, 2 * Math.PI);
+      paper.fillStyle = curve.color;
+      paper.fill();
+    }
+    paper.fillStyle = faint;
     paper.font = "11px system-ui, sans-serif";
-    paper.fillText(quantity(high, unit), margin.left, 11);
+    paper.fillText(quantity(high > 0 ? high : low, unit), margin.left, 11);
+    if (!isOverTime) {
+      paper.fillText(quantity(first, across), margin.left, height - 4);
+      paper.textAlign = "right";
+      paper.fillText(quantity(first + span, across), width - margin.right, height - 4);
+      paper.textAlign = "left";
+    }
   };
   canvas.addEventListener("pointerdown", (event) => {
+    if (!isOverTime) return;
     const part = (event.offsetX - margin.left) / (canvas.clientWidth - margin.left - margin.right);
     const time = first + Math.max(0, Math.min(1, part)) * span;
     const distances = facts.frames.map((frame) => Math.abs(frame.time - time));
@@ -219,25 +238,50 @@ function plot(title, unit, curves) {
 
 /** The plots there is something to show in; of many tips the eight with the largest K have names. */
 function allPlots() {
-  const { tips, energies, time } = facts.series;
+  const { tips, energies, supports } = facts.series;
   const most = (tip) => tip.mode_1.reduce((a, b) => Math.max(a, Math.abs(b)), 0);
   const ranked = [...tips].sort((a, b) => most(b) - most(a));
-  const of = (key) => ranked.map((tip, i) => ({
+  const of = (key, across) => ranked.map((tip, i) => ({
     name: i < palette.length ? tip.name : "", color: i < palette.length ? palette[i] : "#8a93a055",
-    at: tip.at, values: tip[key],
+    x: tip[across], y: tip[key], time: across === "time" ? undefined : tip.time,
   }));
+  const unnamed = (curves) => curves.map((curve) => ({ ...curve, name: "" }));
   const all = [];
   if (tips.length > 0) {
-    const toughness = ranked.slice(0, 1).map((tip) => (
-      { name: "", color: "#8a93a0", thickness: 1, at: tip.at, values: tip.fracture_toughness }));
-    all.push(plot("KI", "Pa√m", [...toughness, ...of("mode_1")]));
-    all.push(plot("KII", "Pa√m", of("mode_2").map((curve) => ({ ...curve, name: "" }))));
-    all.push(plot("J", "J/m²", of("j_integral").map((curve) => ({ ...curve, name: "" }))));
+    const toughness = (across) => ranked.slice(0, 1).map((tip) => (
+      { name: "", color: "#8a93a0", thickness: 1, x: tip[across], y: tip.fracture_toughness }));
+    all.push(plot("KI", "Pa√m", [...toughness("time"), ...of("mode_1", "time")]));
+    all.push(plot("KII", "Pa√m", unnamed(of("mode_2", "time"))));
+    all.push(plot("J", "J/m²", unnamed(of("j_integral", "time"))));
+    const grown = ranked.filter((tip) => tip.length[tip.length.length - 1] > tip.length[0]);
+    if (grown.length > 0) {
+      all.push(plot("KI over length", "Pa√m", unnamed([...toughness("length"), ...of("mode_1", "length")]), "m"));
+    }
+    const [tip] = ranked.filter((tip) => tip.contours.length > 0);
+    if (tip) {
+      all.push(plot(`J by radius, ${tip.name}`, "J/m²", [
+        ...tip.contours.map((of_radius) => ({
+          name: "", color: "#8a93a088", thickness: 1, x: of_radius.time, y: of_radius.contour })),
+        ...tip.contours.map((of_radius, i) => ({
+          name: `${of_radius.cells} cells`, color: palette[i], x: of_radius.time, y: of_radius.domain })),
+        { name: "circle alone", color: "#8a93a0", x: [], y: [] },
+      ]));
+    }
   }
-  const at = time.map((_, i) => i);
-  const names = { external_work: "work done", strain: "strain", kinetic: "kinetic", crack: "cracks" };
-  all.push(plot("energy", "J/m", Object.entries(names).map(([key, name], i) => (
-    { name, color: palette[i], at, values: energies[key] }))));
+  const names = {
+    external_work: "work done", strain: "strain", kinetic: "kinetic", crack: "cracks", damping: "damping", rest: "rest",
+  };
+  const known = Object.entries(names).filter(([key]) => energies[key].length > 0);
+  all.push(plot("energy", "J/m", known.map(([key, name], i) => (
+    { name, color: palette[i], x: energies.time, y: energies[key] }))));
+  if (supports.length > 0) {
+    // Along the way that each has gone in the end.
+    const sign = (support) => Math.sign(support.displacement[support.displacement.length - 1]) || 1;
+    all.push(plot("load over displacement", "N/m", supports.map((support, i) => ({
+      name: i < palette.length ? support.name : "", color: palette[i] || "#8a93a055", time: support.time,
+      x: support.displacement.map((way) => sign(support) * way), y: support.force.map((force) => sign(support) * force),
+    })), "m"));
+  }
   return all;
 }
 

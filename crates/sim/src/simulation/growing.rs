@@ -67,7 +67,7 @@ impl Simulation {
     /// One step and what it makes the cracks do. `is_last`: the last one of a frame, after which the records of all
     /// tips are wanted.
     pub(super) fn one_step(&mut self, time_step: f64, is_last: bool) -> Result<(), SimulationError> {
-        let Self { scene, elastic, solver, state, counts, stages, .. } = self;
+        let Self { scene, elastic, solver, state, counts, stages, contours, .. } = self;
         let gauge = Gauge { scene, elastic };
         let every = is_last || !scene.growth.enabled;
         let mut live = state.cracks.live();
@@ -79,11 +79,13 @@ impl Simulation {
         });
         let cracks = &state.cracks;
         let mut assessed: Vec<Assessment> = Vec::with_capacity(live.len());
+        contours.clear();
         stages.enter(Stage::Motion);
         let mut observe = |moment: &dyn Observed| {
             stages.enter(Stage::Looks);
             for &id in &live {
                 assessed.push(growth::assess(&gauge.read(moment, cracks, id), scene));
+                contours.look(|| gauge.contours(moment, cracks, id));
             }
             stages.enter(Stage::Motion);
         };

@@ -3,6 +3,7 @@
 mod account;
 mod advance;
 mod branching_off;
+mod contours;
 mod counts;
 mod estimate;
 #[cfg(test)]
@@ -27,6 +28,7 @@ use crate::particles::Particles;
 use crate::solver::Solver;
 use crate::{SimulationError, foresight, memory};
 use branching_off::WaitingBranch;
+use contours::ContourWatch;
 use fissure_scene::{Formulation, Scene};
 use serde::{Deserialize, Serialize};
 use stages::StageWatch;
@@ -43,6 +45,7 @@ pub struct Simulation {
     state: RunState,
     counts: Counts,
     stages: StageWatch,
+    contours: ContourWatch,
     /// Largest stable time step at the last look [s].
     stable_time_step: f64,
 }
@@ -122,6 +125,7 @@ impl Simulation {
             particles,
             counts: Counts::default(),
             stages: StageWatch::default(),
+            contours: ContourWatch::default(),
             stable_time_step: 0.0,
         };
         simulation.split_fragments();

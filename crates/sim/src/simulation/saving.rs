@@ -79,6 +79,7 @@ impl Simulation {
             state: saved.state,
             counts: Counts::default(),
             stages: super::stages::StageWatch::default(),
+            contours: super::contours::ContourWatch::default(),
             stable_time_step: 0.0,
         })
     }

@@ -87,6 +87,23 @@ impl Simulation {
         energies.kinetic + energies.strain + self.solver.energy_of_lag()
     }
 
+    /// Energy budget now, with the kinetic energy of the same moment as the strain energy. Costs an evaluation of all
+    /// forces.
+    pub fn energies_of_one_moment(&self) -> Energies {
+        let energies = self.energies();
+        Energies { kinetic: energies.kinetic + self.solver.energy_of_lag(), ..energies }
+    }
+
+    /// Kinetic energy, half a step before now in the total formulation [J/m]; cheap, unlike the other energies.
+    pub fn kinetic_energy(&self) -> f64 {
+        self.solver.kinetic_energy()
+    }
+
+    /// Force times time that each support has exerted on the material since the start, along x and y [N s/m].
+    pub fn support_impulses(&self) -> Vec<[f64; 2]> {
+        self.solver.reactions().iter().map(|reaction| reaction.impulse).collect()
+    }
+
     /// Linear [N s/m] and angular momentum about the origin [N s] now, per unit thickness.
     pub fn momenta(&self) -> (Vector, f64) {
         self.solver.momenta()

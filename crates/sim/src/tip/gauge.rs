@@ -8,6 +8,7 @@ use crate::grid::kernel::axis_stencil;
 use crate::material::elastic::Elastic;
 use crate::solver::Observed;
 use crate::tip::contour::{Contour, ContourHalf, ContourSample};
+use crate::tip::contours::KERNEL_REACH;
 use crate::tip::domain::domain_integrals;
 use crate::tip::reciprocal::{Setting, reciprocal_integrals};
 use crate::tip::zone::{QuadraturePoint, TipZone};
@@ -62,18 +63,13 @@ impl Gauge<'_> {
             JMethod::Domain => self.domain_radius(moment, cracks, id),
             JMethod::Contour => (settings.j_radius.unwrap_or(NARROW_RADIUS) * h, false, None),
         };
-        // The contour takes kernel averages around its points.
-        let reach = if settings.j_method == JMethod::Contour { radius + 2.0 * h } else { radius };
+        let reach = if settings.j_method == JMethod::Contour { radius + KERNEL_REACH * h } else { radius };
         let mut zone = moment.tip_zone(cracks, id, reach);
         if kink.is_none() {
             zone.center_on_crack(h);
         }
         zone.take_off_mean_velocity();
-        let Some(nearest) = zone.points.iter().min_by(|a, b| a.place.norm_squared().total_cmp(&b.place.norm_squared()))
-        else {
-            return Reading::default();
-        };
-        let elastic = &self.elastic[nearest.material as usize];
+        let Some(elastic) = self.material_at_tip(&zone) else { return Reading::default() };
         let domain = |outer: f64| domain_integrals(&zone, self.elastic, elastic, h, outer, settings.area_term);
         let (j_integral, found) = match settings.j_method {
             JMethod::Domain => {
@@ -114,6 +110,13 @@ impl Gauge<'_> {
         }
     }
 
+    /// The material of the particle nearest to a tip; none: there are no particles.
+    pub(super) fn material_at_tip(&self, zone: &TipZone) -> Option<&Elastic> {
+        let by_distance =
+            |a: &&QuadraturePoint, b: &&QuadraturePoint| a.place.norm_squared().total_cmp(&b.place.norm_squared());
+        zone.points.iter().min_by(by_distance).map(|nearest| &self.elastic[nearest.material as usize])
+    }
+
     /// Radius of the domain around a tip [m], whether it is smaller than asked for, and, where the integrals have to
     /// cope with a kink, the way to that [m].
     fn domain_radius(&self, moment: &dyn Observed, cracks: &Cracks, id: TipId) -> (f64, bool, Option<f64>) {
@@ -139,7 +142,7 @@ impl Gauge<'_> {
     /// Distance from a tip to the nearest thing that would spoil the integral: a ring, a crack that does not lead to
     /// it, the other end of those that do, a bend of theirs where `bends` count [m]; what is farther than `enough` [m]
     /// is not looked at.
-    fn free_radius(&self, cracks: &Cracks, id: TipId, bends: bool, enough: f64) -> f64 {
+    pub(super) fn free_radius(&self, cracks: &Cracks, id: TipId, bends: bool, enough: f64) -> f64 {
         let line = cracks.of(id);
         let tip = cracks.position(id);
         let body = &self.scene.bodies[line.body as usize];
@@ -187,9 +190,15 @@ impl Gauge<'_> {
         free.min((far - tip).norm())
     }
 
+    /// J along the crack by a contour, with the inertia within it where the scene asks for that.
+    fn contour_j(&self, zone: &TipZone, radius: f64) -> f64 {
+        let j = self.circle_j(zone, radius);
+        if self.scene.solver.area_term { j + area_term(zone, radius) } else { j }
+    }
+
     /// J along the crack by the thesis' contour: 16 segments, values by kernel averages of the particles on the same
     /// side (its eq. 25 to 28).
-    fn contour_j(&self, zone: &TipZone, radius: f64) -> f64 {
+    pub(super) fn circle_j(&self, zone: &TipZone, radius: f64) -> f64 {
         let opening = if zone.opening_distance > 0.0 {
             zone.opening.y.max(0.0) * (radius / zone.opening_distance).sqrt()
         } else {
@@ -198,16 +207,18 @@ impl Gauge<'_> {
         let lower = Point::new(-radius, -0.5 * opening);
         let upper = Point::new(-radius, 0.5 * opening);
         let contour = Contour::new(Point::origin(), radius, lower, upper);
-        let sampled = contour.j_integral(|place, half| Ok::<_, Infallible>(self.contour_sample(zone, place, half)));
+        let reach = KERNEL_REACH * self.scene.cell_size;
+        let is_near = |p: &&QuadraturePoint| (p.place.norm() - radius).abs() < std::f64::consts::SQRT_2 * reach;
+        let near: Vec<QuadraturePoint> = zone.points.iter().filter(is_near).copied().collect();
+        let sampled = contour.j_integral(|place, half| Ok::<_, Infallible>(self.contour_sample(&near, place, half)));
         let j = match sampled {
             Ok(j) => j.x,
             Err(never) => match never {},
         };
-        let j = j - zone.work_of_face_loads(radius);
-        if self.scene.solver.area_term { j + area_term(zone, radius) } else { j }
+        j - zone.work_of_face_loads(radius)
     }
 
-    fn contour_sample(&self, zone: &TipZone, place: Point, half: ContourHalf) -> ContourSample {
+    fn contour_sample(&self, points: &[QuadraturePoint], place: Point, half: ContourHalf) -> ContourSample {
         let h = self.scene.cell_size;
         let half_size = 0.5 * self.scene.particle_spacing / h;
         let weight_of = |offset: f64| {
@@ -228,7 +239,7 @@ impl Gauge<'_> {
         };
         let mut velocity = Vector::zeros();
         let mut density = 0.0;
-        for p in &zone.points {
+        for p in points {
             let w = weight_of((p.place.x - place.x) / h) * weight_of((p.place.y - place.y) / h);
             if w <= 0.0 || is_across(p, place, side) {
                 continue;
@@ -254,7 +265,7 @@ impl Gauge<'_> {
 /// The modes of a crack whose faces cannot overlap: no K_I below zero, and none at all where they press on each other
 /// at the tip. What the integral leaves there is the error of the pressure's part: one per cent of the K_I that the
 /// pressure would have without contact.
-fn without_overlap(split: StressIntensity, closed: bool) -> StressIntensity {
+pub(super) fn without_overlap(split: StressIntensity, closed: bool) -> StressIntensity {
     StressIntensity { mode_1: if closed { 0.0 } else { split.mode_1.max(0.0) }, ..split }
 }
 
@@ -276,7 +287,7 @@ fn decisive(j_integral: f64, split: StressIntensity, effective_modulus: f64) -> 
 
 /// Inertia within the contour, ∫ ρ (a_i u_i,1 − v_i v_i,1) dA [J/m²]: what makes J independent of the contour in
 /// dynamics. Source: Nakamura, Shih & Freund 1985; the thesis leaves it out.
-fn area_term(zone: &TipZone, radius: f64) -> f64 {
+pub(super) fn area_term(zone: &TipZone, radius: f64) -> f64 {
     zone.points
         .iter()
         .filter(|p| p.place.norm() < radius)

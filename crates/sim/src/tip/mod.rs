@@ -2,6 +2,7 @@
 
 pub(crate) mod bend;
 pub(crate) mod contour;
+pub(crate) mod contours;
 pub(crate) mod domain;
 mod face_terms;
 pub(crate) mod frame;
