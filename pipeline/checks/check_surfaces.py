@@ -17,7 +17,8 @@ Reads the GLB files of the part `cracked` in each FOLDER, made from TAKE. One ro
     overlap   part of the smaller of two objects of a frame that lies in the other one
     open      objects that are not watertight, by themselves or when trimesh merges their vertices
 
-Fails where a solid is open, a volume is off by more than 1e-6 or an area by more than 1e-3.
+Fails where a solid is open, a volume is off by more than 1e-6, an area by more than 1e-3, or where two objects have more
+than 1e-4 of the smaller one in common.
 """
 
 import json
@@ -27,6 +28,7 @@ import sys
 import numpy
 import shapely
 from check_fragments import AREA, VOLUME, check_solid
+from check_overlap import MOST as OVERLAP
 from glb import Glb
 from safetensors.numpy import load_file
 
@@ -197,7 +199,7 @@ def main(arguments):
     for take, folder in zip(*[iter(map(pathlib.Path, arguments))] * 2):
         found = measure(take, folder)
         print(f"{folder.name[:15]:16}" + "".join(f"{found[column]:10.2g}" for column in COLUMNS), flush=True)
-        failed |= found["open"] > 0 or found["volume"] > VOLUME or found["area"] > AREA
+        failed |= found["open"] > 0 or found["volume"] > VOLUME or found["area"] > AREA or found["overlap"] > OVERLAP
     sys.exit(bool(failed))
 
 

@@ -60,7 +60,6 @@ pub(crate) enum Operation {
 /// `before` changed by the places that `contours` (counter-clockwise) wind around.
 pub(crate) fn combine(before: &[Shape], operation: Operation, contours: &[Contour]) -> Vec<Shape> {
     let mut overlay = EdgeOverlay::<i64, SourceIndex>::new(before.iter().flatten().map(Vec::len).sum());
-    let input = |edge: &Edge| InputEdge { a: edge.a, b: edge.b, data: edge.source };
     overlay.add_edges(before.iter().flatten().flatten().map(input), ShapeType::Subject);
     overlay.add_edges(contours.iter().flatten().map(input), ShapeType::Clip);
     let rule = match operation {
@@ -68,6 +67,35 @@ pub(crate) fn combine(before: &[Shape], operation: Operation, contours: &[Contou
         Operation::Fill => OverlayRule::Union,
     };
     shapes(&mut overlay, rule, FillRule::Positive)
+}
+
+/// All places that `edges`, the contours of valid polygons, wind around at least twice.
+pub(crate) fn covered_twice(edges: impl Iterator<Item = Edge>) -> Vec<Shape> {
+    let edges: Vec<InputEdge<i64, SourceIndex>> = edges.map(|e| input(&e)).collect();
+    let (mut low, mut high) = (0, 0);
+    for edge in &edges {
+        low = low.min(edge.a.x).min(edge.a.y);
+        high = high.max(edge.a.x).max(edge.a.y);
+    }
+    // A clockwise square around everything takes one winding off.
+    let corners = [(low - 1, low - 1), (low - 1, high + 1), (high + 1, high + 1), (high + 1, low - 1)];
+    let [a, b, c, d] = corners.map(|(x, y)| GridPoint::new(x, y));
+    let around = [(a, b), (b, c), (c, d), (d, a)].map(|(a, b)| InputEdge { a, b, data: SourceIndex(u32::MAX) });
+    let mut overlay = EdgeOverlay::<i64, SourceIndex>::new(edges.len() + around.len());
+    overlay.add_edges(edges.into_iter().chain(around), ShapeType::Subject);
+    shapes(&mut overlay, OverlayRule::Subject, FillRule::Positive)
+}
+
+/// What the polygons with the edges `a` and those with the edges `b` have in common.
+pub(crate) fn common(a: impl Iterator<Item = Edge>, b: impl Iterator<Item = Edge>) -> Vec<Shape> {
+    let mut overlay = EdgeOverlay::<i64, SourceIndex>::new(0);
+    overlay.add_edges(a.map(|e| input(&e)), ShapeType::Subject);
+    overlay.add_edges(b.map(|e| input(&e)), ShapeType::Clip);
+    shapes(&mut overlay, OverlayRule::Intersect, FillRule::Positive)
+}
+
+fn input(edge: &Edge) -> InputEdge<i64, SourceIndex> {
+    InputEdge { a: edge.a, b: edge.b, data: edge.source }
 }
 
 fn shapes(overlay: &mut EdgeOverlay<i64, SourceIndex>, rule: OverlayRule, fill: FillRule) -> Vec<Shape> {

@@ -10,10 +10,11 @@ use crate::interior::Interior;
 use crate::mesh::{Content, Mesh, object_name};
 use crate::options::PostOptions;
 use crate::outline::outline_edges;
+use crate::overlaps::{Enclosed, share_out_overlaps};
 use crate::pieces::numbers;
 use crate::pinch::part_pinches;
 use crate::rest_cut::rest_cap;
-use crate::short_edges::without_short_edges;
+use crate::short_edges::{Growth, without_short_edges};
 use crate::slivers::without_slivers;
 use crate::slot::Slot;
 use crate::smooth::SmoothCracks;
@@ -23,6 +24,13 @@ use crate::triangulate::{Cap, Division, triangulate};
 use crate::widening::{Shift, Widening, widened};
 use fissure_scene::{CrackFrame, Cut, Fragments, Frame, Region, Scene, Vector, Walls};
 use std::collections::BTreeMap;
+
+/// Overlaps of fragments that are at most so wide in the mean are inaccuracies of contact, in cells: faces that press
+/// on each other sink in by up to a tenth of a cell, and what has no particle of its own by some more.
+const WIDEST_OVERLAP: f64 = 0.25;
+
+/// Body and number of an object.
+type ObjectKey = (u32, u32);
 
 /// One solid per fragment, by body and number.
 ///
@@ -44,27 +52,30 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
         }
     }
     let lines = MovedLines::new(scene, frame, &cracks, shifts);
-    let mut objects = BTreeMap::<(u32, u32), Vec<Vec<Vec<SourceEdge>>>>::new();
+    let mut objects = BTreeMap::<ObjectKey, Vec<Vec<Vec<SourceEdge>>>>::new();
     for (fragment, number) in fragments.list().iter().zip(numbers) {
         let grid = grids[fragment.body as usize];
         let boundaries = fragment.boundaries.iter().map(|boundary| lines.edges(boundary, grid)).collect();
         objects.entry((fragment.body, number)).or_default().push(boundaries);
     }
-    let mut meshes = Vec::with_capacity(objects.len());
     let solids = Solids::new(scene, frame, options, &grids);
+    let mut meshes = BTreeMap::new();
+    let mut opened = Vec::new();
     for ((body, piece), fragments) in objects {
-        let offset = offsets.get(&(body, piece)).copied().unwrap_or_default();
-        let apart = |mesh: Mesh| mesh.moved(grids[body as usize].nearest(offset));
         if options.cut == Cut::Rest
             && let Some(mesh) = solids.at_rest(body, piece, &fragments)
         {
-            meshes.extend(mesh.map(apart));
+            meshes.extend(mesh.map(|mesh| ((body, piece), mesh)));
             continue;
         }
-        let sources = fragments.into_iter().flatten().flatten().collect();
-        meshes.extend(solids.opened(body, piece, sources)?.map(apart));
+        opened.push(solids.enclosed(body, piece, fragments.into_iter().flatten().flatten().collect())?);
     }
-    Ok(meshes)
+    meshes.extend(solids.opened(opened)?);
+    let apart = |(object, mesh): (ObjectKey, Mesh)| {
+        let offset = offsets.get(&object).copied().unwrap_or_default();
+        mesh.moved(grids[object.0 as usize].nearest(offset))
+    };
+    Ok(meshes.into_iter().map(apart).collect())
 }
 
 /// How far the faces of each crack are moved at each of its points: as it is to be shown.
@@ -83,7 +94,7 @@ fn farthest<'a>(vectors: impl Iterator<Item = &'a Vector>) -> f64 {
 /// One solid per body, without its cracks.
 pub(crate) fn whole_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result<Vec<Mesh>, PostError> {
     let grids = grids(scene, frame, &[], 0.0)?;
-    let mut meshes = Vec::with_capacity(grids.len());
+    let mut bodies = Vec::with_capacity(grids.len());
     let options = &PostOptions { cut: Cut::Opening, ..options.clone() };
     let solids = Solids::new(scene, frame, options, &grids);
     for (body, &grid) in (0..).zip(&grids) {
@@ -92,9 +103,9 @@ pub(crate) fn whole_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) 
         let particles = &frame.particles;
         let of_body = (0..particles.len()).filter(|&p| particles.body[p] == body);
         let piece = of_body.map(|p| particles.piece[p]).min().unwrap_or(0);
-        meshes.extend(solids.opened(body, piece, sources)?);
+        bodies.push(solids.enclosed(body, piece, sources)?);
     }
-    Ok(meshes)
+    Ok(solids.opened(bodies)?.into_iter().map(|(_, mesh)| mesh).collect())
 }
 
 /// The grid of each body, fine enough for its outline and `cracks`, all moved by so much `beyond` [m].
@@ -127,20 +138,49 @@ impl<'a> Solids<'a> {
         Self { scene, frame, options, grids, interiors }
     }
 
-    /// Extrudes what the boundary of fragment `piece` encloses as it is now; nothing where that is no more than
-    /// rounding.
-    fn opened(&self, body: u32, piece: u32, mut sources: Vec<SourceEdge>) -> Result<Option<Mesh>, PostError> {
-        let (grid, options) = (self.grids[body as usize], self.options);
-        let least = options.shortest_edge * self.size(body) / grid.step;
+    /// What the boundary of fragment `piece` encloses as it is now; nothing where that is no more than rounding.
+    fn enclosed(&self, body: u32, piece: u32, sources: Vec<SourceEdge>) -> Result<Enclosed, PostError> {
+        let grid = self.grids[body as usize];
+        let least = self.options.shortest_edge * self.size(body) / grid.step;
         let shapes = without_slivers(material(&sources));
-        let region = &self.scene.bodies[body as usize].region;
-        let parted = part_pinches(shapes, &mut sources, 0.25 * least).map_err(|place| {
-            let (place, body) = (grid.place(place), self.scene.bodies[body as usize].name.clone());
-            PostError::Pinch { frame: self.frame.number, body, x: place.x, y: place.y }
-        })?;
-        let mut shapes = without_slivers(parted);
-        let is_drawn = |edge: &Edge, source: &SourceEdge| is_drawn(region, edge, source);
-        without_short_edges(&mut shapes, least, &mut sources, is_drawn);
+        let mut enclosed = Enclosed { body, piece, grid, shapes, sources, least, has_lost: false };
+        self.tidy(&mut enclosed, Growth::Allowed)?;
+        Ok(enclosed)
+    }
+
+    /// Parts contours that touch, and takes short edges out of them.
+    fn tidy(&self, of: &mut Enclosed, growth: Growth) -> Result<(), PostError> {
+        let body = &self.scene.bodies[of.body as usize];
+        let parted =
+            part_pinches(std::mem::take(&mut of.shapes), &mut of.sources, 0.25 * of.least).map_err(|place| {
+                let place = of.grid.place(place);
+                PostError::Pinch { frame: self.frame.number, body: body.name.clone(), x: place.x, y: place.y }
+            })?;
+        of.shapes = without_slivers(parted);
+        let is_drawn = |edge: &Edge, source: &SourceEdge| is_drawn(&body.region, edge, source);
+        without_short_edges(&mut of.shapes, of.least, growth, &mut of.sources, is_drawn);
+        Ok(())
+    }
+
+    /// Extrudes fragments as they are now, by body and number, those that lie in each other up to the middle of it.
+    fn opened(&self, mut fragments: Vec<Enclosed>) -> Result<Vec<(ObjectKey, Mesh)>, PostError> {
+        let material = |of: &Enclosed, place| self.interiors[of.body as usize].at(place, of.piece);
+        share_out_overlaps(&mut fragments, WIDEST_OVERLAP * self.scene.cell_size, material);
+        let mut meshes = Vec::with_capacity(fragments.len());
+        for mut fragment in fragments {
+            if fragment.has_lost {
+                self.tidy(&mut fragment, Growth::Hardly)?;
+            }
+            let object = (fragment.body, fragment.piece);
+            meshes.extend(self.solid(fragment).map(|mesh| (object, mesh)));
+        }
+        Ok(meshes)
+    }
+
+    /// Extrudes a fragment; nothing where it is smaller than asked for.
+    fn solid(&self, fragment: Enclosed) -> Option<Mesh> {
+        let Enclosed { body, piece, grid, mut shapes, sources, .. } = fragment;
+        let options = self.options;
         shapes.retain(|shape| area(shape, grid) >= options.smallest_fragment);
         let division = Division::Fine { size: options.cap_size.map(|size| size / grid.step) };
         let extrusion = self.extrusion(body, &sources);
@@ -149,7 +189,7 @@ impl<'a> Solids<'a> {
             (cap, within)
         };
         let caps = shapes.iter().map(|shape| carried(triangulate(shape, division))).collect();
-        Ok(self.mesh(body, piece, &extrusion, caps))
+        self.mesh(body, piece, &extrusion, caps)
     }
 
     /// Extrudes the triangles of `fragments` at rest, moved with the material. None where that is no solid: where the

@@ -8,7 +8,7 @@
 //!    and each its own boundary: edges of moved rings and crack faces that know the rest position, velocity and arc
 //!    length of the material at their ends. `outline`: a body without its cracks.
 //!    `smooth`: paths of cracks without their zigzag. `rest_cut`: triangles at rest that the material carries, in place
-//!    of steps 3 to 6.
+//!    of steps 3 to 7.
 //! 3. `boolean`: a fragment is where its own edges wind around a place at least once. An open crack in it takes one
 //!    off; where its faces overlap one is added, so cracks that are closed have no walls, unless all are to have some
 //!    (`held_open`), or cracks are shown wider than they are (`widening`). Fragments may turn, fly
@@ -16,15 +16,17 @@
 //! 4. `slivers`: what is mere rounding goes.
 //! 5. `pinch`: contours that touch in a point are parted, so that the solid is manifold for every reader.
 //! 6. `short_edges`: edges that readers which merge by distance would close are taken out.
-//! 7. `triangulate`, `interior`, `extrude`: caps of triangles without small angles, and walls, with normals, texture
+//! 7. `overlaps`: fragments that lie in each other a little share the middle; then steps 4 to 6 once more.
+//! 8. `triangulate`, `interior`, `extrude`: caps of triangles without small angles, and walls, with normals, texture
 //!    coordinates, velocities and material slots.
-//! 8. [`Mesh::check`]: closed, manifold, oriented, volume = area × thickness, in the precision of the file.
-//! 9. `formats`: the bytes of files, one module per format; `write`, `manifest`: the files, with the feature `files`,
-//!    which is on by default.
+//! 9. [`Mesh::check`]: closed, manifold, oriented, volume = area × thickness, in the precision of the file.
+//! 10. `formats`: the bytes of files, one module per format; `write`, `manifest`: the files, with the feature `files`,
+//!     which is on by default.
 //!
 //! Promised: every solid that is returned has passed the check, and each fragment that holds a particle is one solid in
-//! every frame, unless `smallest_fragment` leaves it out. Not promised: that solids that the simulation lets overlap
-//! stay apart; openings below two grid steps (4e-6 m in a body of 20 m) may be shown closed.
+//! every frame, unless `smallest_fragment` leaves it out. Not promised: that solids stay apart that the simulation lets
+//! overlap by more than a quarter of a cell in the mean; openings below two grid steps (4e-6 m in a body of 20 m) may
+//! be shown closed.
 
 #[doc(hidden)]
 pub mod bench;
@@ -45,6 +47,7 @@ mod mesh;
 mod opening;
 mod options;
 mod outline;
+mod overlaps;
 mod packed;
 mod particles;
 mod pieces;

@@ -18,7 +18,8 @@ pub(crate) fn without_slivers(shapes: Vec<Shape>) -> Vec<Shape> {
     kept
 }
 
-fn is_sliver(contour: &[Edge]) -> bool {
+/// Whether a contour encloses no more than rounding.
+pub(crate) fn is_sliver(contour: &[Edge]) -> bool {
     let length: f64 = contour.iter().map(|e| ((e.b.x - e.a.x) as f64).hypot((e.b.y - e.a.y) as f64)).sum();
     // A strip of width w and length l has area w l and circumference 2 l.
     twice_area(contour).unsigned_abs() as f64 <= THINNEST * length
