@@ -10,15 +10,26 @@ use fissure_files::Folder;
 use fissure_post::{
     Manifest, PostError, PostOptions, Provenance, Sequences, WriteError, post_frame, write_companions, write_frame,
 };
-use fissure_scene::{Format, Frame, Scene, Take};
+use fissure_scene::{Format, Frame, Scene, SceneFault, Take};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// That each format shows something of the parts, in what is meant to be written.
+/// That each format shows something of the parts, in what is meant to be written, and that the take has the particles
+/// for it.
 ///
 /// # Errors
-/// Names the format that does not.
+/// Names the format that does not, or what lacks particles.
 pub(crate) fn must_show(scene: &Scene, typed: &MeshArguments) -> Result<(), Failure> {
-    let parts = if typed.parts.is_empty() { &scene.output.parts } else { &typed.parts };
+    let mut output = scene.output.clone();
+    output.formats = formats(scene, typed).to_vec();
+    if !typed.parts.is_empty() {
+        output.parts.clone_from(&typed.parts);
+    }
+    if let Some(cut) = typed.cut {
+        output.surfaces.cut = cut;
+    }
+    let lacking = |fault: SceneFault| Failure::new(Exit::Usage, fault.message, fault.remedy);
+    scene.take.particles.must_do_for(&output).map_err(lacking)?;
+    let parts = &output.parts;
     let is_empty = |format: &&Format| !parts.iter().any(|&part| format.shows(part));
     let Some(format) = formats(scene, typed).iter().find(is_empty) else { return Ok(()) };
     let message = format!("the format `{}` shows none of the parts that are asked for", format.name());

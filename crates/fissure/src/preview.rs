@@ -12,7 +12,7 @@ use crate::workers::{Work, stream};
 use crate::{take_path, threads};
 use fissure_files::{Folder, Lock};
 use fissure_preview::{Coloring, PreviewOptions, Series, Survey, Table, Theme, View};
-use fissure_scene::Take;
+use fissure_scene::{HeldParticles, Take};
 use std::sync::{Mutex, PoisonError};
 
 /// Folder of the pictures, in that of the take.
@@ -39,6 +39,7 @@ pub(crate) fn draw(
     let numbers = take_path::chosen_frames(&take, &path, arguments.frames.as_ref())?;
     take.remarks()?.iter().for_each(|remark| report.warn(&remark.to_string()));
     let options = options(arguments);
+    must_be_held(take.scene().take.particles, options.coloring)?;
     let kinds = kinds(arguments);
     let (mut survey, mut series) = (Survey::new(options.coloring), Series::default());
     for &number in &numbers {
@@ -94,6 +95,22 @@ fn take_up_tables(series: &mut Series, take: &Take, folder: &Folder, report: &Re
         }
     }
     Ok(())
+}
+
+/// That a take with these particles can be drawn so.
+///
+/// # Errors
+/// When there is nothing to take the colours from.
+fn must_be_held(particles: HeldParticles, coloring: Coloring) -> Result<(), Failure> {
+    if particles > HeldParticles::None || coloring == Coloring::Fragment {
+        return Ok(());
+    }
+    let message = "the take holds no particles to take the colours from (`take.particles` is \"none\")";
+    Err(Failure::new(
+        Exit::Usage,
+        message,
+        "draw it with --color fragment, or simulate again with `take.particles` \"surface\" or \"full\"",
+    ))
 }
 
 /// What is to be made.

@@ -146,7 +146,7 @@ impl Solve {
     ) -> Result<Outcome, Failure> {
         interrupt.finish_cleanly();
         let mut progress = SimulationProgress::new(report, self.newest, self.last);
-        let frame = self.simulation.frame();
+        let frame = self.writer.held(self.simulation.frame());
         // The state at the newest frame: what goes on after an interrupt in the middle of the next.
         let mut state = self.simulation.save()?;
         // A frame that is there already is held against what was restored.
@@ -171,7 +171,7 @@ impl Solve {
                 self.writer.write_state(&state, self.newest)?;
                 return goes_on.map(|_| Outcome::Interrupted).map_err(Failure::from);
             }
-            let frame = self.simulation.frame();
+            let frame = self.writer.held(self.simulation.frame());
             if self.simulation.formulation() != formulation {
                 formulation = self.simulation.formulation();
                 progress.note(&format!(

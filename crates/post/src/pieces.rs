@@ -3,23 +3,12 @@
 use fissure_scene::{Fragment, Fragments, Frame, Line, Point};
 use std::collections::BTreeMap;
 
-/// The number of each of `fragments` in the simulation: that of most of the particles in it at rest, of equally many
-/// the lowest.
+/// The number of each of `fragments` in the simulation: [`Fragments::numbers`].
 ///
 /// What is so small that it holds no particle goes with the fragment that it has the longest crack face in common with,
 /// or else with the particle nearest to it at rest; of a body without particles all is number 0.
 pub(crate) fn numbers(fragments: &Fragments, frame: &Frame) -> Vec<u32> {
-    let particles = &frame.particles;
-    let mut votes = vec![BTreeMap::<u32, usize>::new(); fragments.list().len()];
-    for p in 0..particles.len() {
-        if let Some(fragment) = fragments.at(particles.body[p], particles.rest[p]) {
-            *votes[fragment].entry(particles.piece[p]).or_default() += 1;
-        }
-    }
-    let winner = |votes: BTreeMap<u32, usize>| {
-        votes.into_iter().max_by_key(|&(piece, count)| (count, std::cmp::Reverse(piece))).map(|(piece, _)| piece)
-    };
-    let mut numbers: Vec<Option<u32>> = votes.into_iter().map(winner).collect();
+    let mut numbers = fragments.numbers(&frame.particles);
     let others = beside_each_other(fragments, &numbers);
     // From those with a particle outwards, one fragment farther in each round.
     loop {

@@ -10,7 +10,7 @@ use crate::rims::rims;
 use crate::survey::Survey;
 use crate::{crack_lines, inclusions, legend, tip_marks};
 use fissure_post::{FrameMeshes, Mesh, Slot};
-use fissure_scene::{Frame, Part, Scene};
+use fissure_scene::{Frame, HeldParticles, Part, Scene};
 use nalgebra::Vector3;
 use tiny_skia::{LineCap, LineJoin, PathBuilder, Stroke, Transform};
 
@@ -153,7 +153,10 @@ fn lines(
     let mut inclusions = None;
     if is_in_place(scene, frame) {
         frame.cracks.iter().for_each(|crack| crack_lines::add(&mut cracks, crack, z, projection));
-        inclusions = inclusions::edges(scene, frame, z, projection);
+        // They are moved by the particles beside them.
+        if scene.take.particles == HeldParticles::Full {
+            inclusions = inclusions::edges(scene, frame, z, projection);
+        }
     }
     let width = (0.09 * layout.letters) as f32;
     let drawn = [(outer.finish(), theme.edge()), (inclusions, theme.inclusion()), (cracks.finish(), theme.crack())];

@@ -28,6 +28,7 @@ mod settings;
 mod simulation_hash;
 #[cfg(feature = "take")]
 mod take;
+mod take_settings;
 mod toughness;
 mod validate;
 
@@ -48,4 +49,5 @@ pub use scene::*;
 pub use settings::*;
 #[cfg(feature = "take")]
 pub use take::*;
+pub use take_settings::*;
 pub use toughness::*;

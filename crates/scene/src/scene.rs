@@ -3,6 +3,7 @@
 use crate::curve::Curve;
 use crate::frame::{End, Pose};
 use crate::settings::{ContactSettings, FrameSettings, GrowthSettings, OutputSettings, PlaneState, SolverSettings};
+use crate::take_settings::TakeSettings;
 use crate::toughness::ToughnessPatch;
 use fissure_plane::{Point, Region, Vector};
 use serde::{Deserialize, Serialize};
@@ -44,6 +45,9 @@ pub struct Scene {
     pub growth: GrowthSettings,
     /// Frames.
     pub frames: FrameSettings,
+    /// What the take holds of particles.
+    #[serde(default)]
+    pub take: TakeSettings,
     /// Output.
     pub output: OutputSettings,
 }

@@ -14,12 +14,12 @@ fn frames_come_back_bit_for_bit() {
         let kept_apart = ParticlesAtRest::from_bytes(&at_rest.to_bytes().unwrap()).unwrap();
         assert_eq!(kept_apart, at_rest);
         for known in [None, Some(&kept_apart)] {
-            let bytes = frame_to_bytes(&frame, known).unwrap();
-            assert_eq!(bytes, frame_to_bytes(&frame.clone(), known).unwrap());
+            let bytes = frame_to_bytes(&frame, Precision::Double, known).unwrap();
+            assert_eq!(bytes, frame_to_bytes(&frame.clone(), Precision::Double, known).unwrap());
             let back = frame_from_bytes(&bytes, known).unwrap();
             assert_eq!(back, frame);
             // Also the sign of zero, which `==` does not see.
-            assert_eq!(frame_to_bytes(&back, known).unwrap(), bytes);
+            assert_eq!(frame_to_bytes(&back, Precision::Double, known).unwrap(), bytes);
             for cut in [0, 7, bytes.len() / 2, bytes.len() - 1] {
                 assert!(frame_from_bytes(&bytes[..cut], known).is_err());
             }
@@ -28,7 +28,7 @@ fn frames_come_back_bit_for_bit() {
     let mut uneven = frame(1);
     uneven.particles.body.pop();
     let fault = FrameFault::UnequalLengths { part: FramePart::Particles, lengths: vec![5, 4, 5, 5, 5, 5, 5, 5] };
-    assert_eq!(frame_to_bytes(&uneven, None), Err(FrameFileError::Frame(fault)));
+    assert_eq!(frame_to_bytes(&uneven, Precision::Double, None), Err(FrameFileError::Frame(fault)));
 }
 
 /// What particles are at rest is written once; a frame that has others says so itself, and so does one that differs in
@@ -79,6 +79,49 @@ fn a_take_is_read_as_it_was_written() {
     assert_eq!(energy.lines().count(), 5);
 }
 
+/// Truth: what the writer says that it holds, in full and half as many bytes.
+#[test]
+fn a_take_of_single_precision_is_read_as_it_is_held() {
+    let bytes_of = |precision: Precision| {
+        let folder = tempfile::tempdir().unwrap();
+        let mut scene = scene();
+        scene.take.precision = precision;
+        let mut writer = TakeWriter::open(&Folder::new(folder.path()), &scene, provenance(), 9).unwrap().writer;
+        let held = writer.held(frame(1));
+        assert_eq!(held == frame(1), precision == Precision::Double);
+        writer.write_frame(&held, None).unwrap();
+        let take = Take::open(folder.path()).unwrap();
+        assert_eq!(take.frame(1).unwrap(), held);
+        take.frames()[0].files[0].bytes
+    };
+    // Twelve numbers of each of five particles, up to digits of offsets in the header.
+    let less = bytes_of(Precision::Double) - bytes_of(Precision::Single);
+    assert!(less.abs_diff(5 * 12 * 4) < 64, "{less}");
+}
+
+/// What is made of particles is refused where the take will have none, with the key that asks for it.
+#[test]
+fn what_is_made_of_particles_needs_them() {
+    type Change = fn(&mut OutputSettings);
+    let changes: [(&str, HeldParticles, Change); 5] = [
+        ("output.parts", HeldParticles::Surface, |o| o.parts.push(Part::Particles)),
+        ("output.formats", HeldParticles::Surface, |o| o.formats.push(Format::GlbRigid)),
+        ("output.explode", HeldParticles::Surface, |o| o.explode = Some(Curve { points: vec![(0.0, 1.0)] })),
+        ("output.cap_size", HeldParticles::Full, |o| o.surfaces.cap_size = Some(1.0)),
+        ("output.cut", HeldParticles::Full, |o| o.surfaces.cut = Cut::Rest),
+    ];
+    for (key, least, change) in changes {
+        for particles in [HeldParticles::None, HeldParticles::Surface, HeldParticles::Full] {
+            let mut scene = scene();
+            scene.take.particles = particles;
+            scene.validate().unwrap();
+            change(&mut scene.output);
+            let refused = scene.validate().err().map(|fault| fault.path.to_string());
+            assert_eq!(refused, (particles < least).then(|| key.to_owned()), "{particles:?}");
+        }
+    }
+}
+
 /// A scene that computes the same goes on in the same take, whose meshes follow the scene as it is now.
 #[test]
 fn what_the_frames_do_not_depend_on_may_change() {
@@ -102,13 +145,14 @@ fn what_the_frames_do_not_depend_on_may_change() {
     assert_eq!(opened.start, Start::At(SavedState { frame: 3, bytes: b"state 3".to_vec() }));
 
     type Change = fn(&mut Scene);
-    let changes: [(&str, Change); 6] = [
+    let changes: [(&str, Change); 7] = [
         ("growth", |s| s.growth.bending = 2.0),
         ("material", |s| s.materials[0].density *= 1.0 + f64::EPSILON),
         ("rate", |s| s.frames.rate = 25.0),
         ("first frame", |s| s.frames.first = 0),
         ("crack", |s| s.cracks[0].points[0].x += 1e-9),
         ("friction", |s| s.solver.crack_friction = 0.5),
+        ("precision", |s| s.take.precision = Precision::Single),
     ];
     for (what, change) in changes {
         let mut other = scene();

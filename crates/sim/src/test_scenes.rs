@@ -32,6 +32,7 @@ pub(crate) fn free_body(region: Region, spacing: f64) -> Scene {
         cracks: Vec::new(),
         toughness: Vec::new(),
         contact: Default::default(),
+        take: Default::default(),
         colliders: Vec::new(),
         gravity: Vector::zeros(),
         loads: Vec::new(),

@@ -74,6 +74,7 @@ impl Problem {
             cracks: Vec::new(),
             toughness: Vec::new(),
             contact: Default::default(),
+            take: Default::default(),
             colliders: Vec::new(),
             gravity: Vector::zeros(),
             loads: Vec::new(),

@@ -14,7 +14,7 @@ mod tree;
 pub use random::Random;
 
 use fissure_post::{PostOptions, post_frame};
-use fissure_scene::{Part, Scene, Take, frame_from_bytes, frame_to_bytes, load};
+use fissure_scene::{Part, Precision, Scene, Take, frame_from_bytes, frame_to_bytes, load};
 use fissure_sim::Simulation;
 use sample::{EXAMPLES, Sample};
 use std::ops::ControlFlow;
@@ -209,8 +209,9 @@ impl Bench {
     fn run_frame(&self, input: &[u8]) -> Result<(), Refusal> {
         let frame = frame_from_bytes(input, None).map_err(|e| e.to_string())?;
         // Equal frames give equal bytes, whatever the file had besides.
-        let again =
-            frame_to_bytes(&frame, None).and_then(|bytes| frame_from_bytes(&bytes, None)).map_err(|e| e.to_string())?;
+        let again = frame_to_bytes(&frame, Precision::Double, None)
+            .and_then(|bytes| frame_from_bytes(&bytes, None))
+            .map_err(|e| e.to_string())?;
         let sample = &self.samples[0];
         post_frame(&sample.scene, &again, &everything(&sample.scene)).map_err(|e| e.to_string())?;
         Ok(())
@@ -237,7 +238,7 @@ impl Bench {
             if steps < STEPS { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         };
         simulation.advance(&mut watch).map_err(|e| e.to_string())?;
-        frame_to_bytes(&simulation.frame(), None).map_err(|e| e.to_string())?;
+        frame_to_bytes(&simulation.frame(), Precision::Double, None).map_err(|e| e.to_string())?;
         Ok(())
     }
 }

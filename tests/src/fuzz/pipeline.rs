@@ -5,7 +5,7 @@ use super::tree::Tree;
 use super::{Refusal, everything, told};
 use fissure_files::Folder;
 use fissure_post::{post_frame, write_frame};
-use fissure_scene::{Format, Scene, frame_from_bytes, frame_to_bytes, load};
+use fissure_scene::{Format, Precision, Scene, frame_from_bytes, frame_to_bytes, load};
 use fissure_sim::Simulation;
 use std::fmt::Write;
 use std::ops::ControlFlow;
@@ -176,9 +176,9 @@ pub(super) fn run(folder: &Path, input: &[u8]) -> Result<(), Refusal> {
     };
     for _ in 0..FRAMES {
         let frame = simulation.frame();
-        let bytes = frame_to_bytes(&frame, None).map_err(|e| e.to_string())?;
+        let bytes = frame_to_bytes(&frame, Precision::Double, None).map_err(|e| e.to_string())?;
         let again = frame_from_bytes(&bytes, None).map_err(|e| format!("a frame of ours is refused: {e}"))?;
-        if frame_to_bytes(&again, None).map_err(|e| e.to_string())? != bytes {
+        if frame_to_bytes(&again, Precision::Double, None).map_err(|e| e.to_string())? != bytes {
             return Err(unsound("a frame comes back as another"));
         }
         let meshes = post_frame(&scene, &frame, &everything(&scene)).map_err(|e| e.to_string())?;

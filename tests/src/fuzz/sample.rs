@@ -3,7 +3,7 @@
 use super::random::Random;
 use super::tree::{Tree, mutate_bytes};
 use fissure_files::Folder;
-use fissure_scene::{Frame, Provenance, Scene, TakeWriter, frame_to_bytes, load};
+use fissure_scene::{Frame, Precision, Provenance, Scene, TakeWriter, frame_to_bytes, load};
 use fissure_sim::Simulation;
 use sha2::{Digest, Sha256};
 use std::ops::ControlFlow;
@@ -94,7 +94,7 @@ pub(super) fn samples(folder: &Path) -> Vec<Sample> {
         let text = std::fs::read_to_string(take.join("manifest.json")).expect("a manifest");
         let manifest: serde_json::Value = serde_json::from_str(&text).expect("a manifest");
         Sample {
-            frame: frame_to_bytes(&frames[2], None).expect("a frame"),
+            frame: frame_to_bytes(&frames[2], Precision::Double, None).expect("a frame"),
             state: simulation.save().expect("a state"),
             scene,
             take,

@@ -34,6 +34,7 @@ pub fn scene(region: Region) -> Scene {
         cracks: Vec::new(),
         toughness: Vec::new(),
         contact: Default::default(),
+        take: Default::default(),
         colliders: Vec::new(),
         gravity: Vector::zeros(),
         loads: Vec::new(),

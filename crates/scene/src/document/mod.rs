@@ -71,6 +71,8 @@ pub struct Document {
     pub growth: GrowthKeys,
     /// Which frames to compute.
     pub frames: FrameKeys,
+    /// What the take holds of particles.
+    pub take: TakeKeys,
     /// Which meshes to write.
     pub output: OutputKeys,
 }

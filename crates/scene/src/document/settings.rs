@@ -7,6 +7,7 @@ use crate::range::{
 };
 use crate::scene::Plasticity;
 use crate::settings::*;
+use crate::take_settings::{HeldParticles, Precision};
 use schemars::JsonSchema;
 use serde::de::Visitor;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -192,6 +193,16 @@ pub struct FrameKeys {
     /// Frames per second at which the sequence is shown. Default: 24. Velocities of meshes are per second of playback.
     #[schemars(transform = FRAME_RATE.bounds())]
     pub playback: Option<f64>,
+}
+
+/// What the take holds of particles: less is smaller on disk, and says less. The saved state has all of them.
+#[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct TakeKeys {
+    /// Which particles: `full` (default) all, `surface` those within a cell of an outline or a crack, or `none`.
+    pub particles: HeldParticles,
+    /// Numbers of particles in `double` (default) or in `single` precision.
+    pub precision: Precision,
 }
 
 /// Which meshes to write.

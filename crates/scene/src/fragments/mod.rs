@@ -12,9 +12,11 @@
 mod lines;
 mod walk;
 
-use crate::frame::{CrackEnd, CrackFrame, Frame};
+use crate::frame::{CrackEnd, CrackFrame, Frame, ParticleFrame};
 use fissure_plane::{Point, RingRows};
 use lines::Lines;
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
 
 /// A line that bounds material, seen with the material on its left. Lines are known by their place in the lists that
 /// [`Fragments::new`] was given.
@@ -123,6 +125,21 @@ impl Fragments {
         }
         let around = of_body().filter(|&i| self.insides[i].0.contains(place));
         around.min_by(|&i, &j| self.insides[i].1.total_cmp(&self.insides[j].1))
+    }
+
+    /// The number of each fragment in the simulation: that of most of the particles in it at rest, of equally many the
+    /// lowest; none where there is no particle.
+    pub fn numbers(&self, particles: &ParticleFrame) -> Vec<Option<u32>> {
+        let mut votes = vec![BTreeMap::<u32, usize>::new(); self.list.len()];
+        for p in 0..particles.len() {
+            if let Some(fragment) = self.at(particles.body[p], particles.rest[p]) {
+                *votes[fragment].entry(particles.piece[p]).or_default() += 1;
+            }
+        }
+        let winner = |votes: BTreeMap<u32, usize>| {
+            votes.into_iter().max_by_key(|&(piece, count)| (count, Reverse(piece))).map(|(piece, _)| piece)
+        };
+        votes.into_iter().map(winner).collect()
     }
 }
 

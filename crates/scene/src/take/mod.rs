@@ -19,6 +19,7 @@
 
 mod error;
 mod frame_file;
+mod held;
 mod list;
 mod manifest;
 mod opening;

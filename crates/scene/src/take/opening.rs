@@ -97,7 +97,7 @@ impl TakeWriter {
             None => remarks.extend(tables::repair(folder, &entries)?.into_iter().map(Remark::TableMadeAnew)),
         }
         folder.sync()?;
-        Ok(Opened { writer: Self::with(folder, entries), start, remarks })
+        Ok(Opened { writer: Self::with(folder, scene, entries), start, remarks })
     }
 }
 

@@ -115,6 +115,7 @@ mod tests {
     use super::super::{Provenance, TakeWriter, frame_to_bytes};
     use super::*;
     use crate::frame::ParticleFrame;
+    use crate::take_settings::Precision;
     use fissure_plane::{Matrix, Point, Vector};
 
     /// Truth: version 3 as it was: every frame says itself what its particles are at rest, and there is no file of it.
@@ -139,7 +140,7 @@ mod tests {
         let provenance = Provenance { tool_version: "0.1.0".into(), seed: 0 };
         TakeWriter::replace(&folder, &scene, provenance.clone()).unwrap().write_frame(&frame, None).unwrap();
 
-        let bytes = frame_to_bytes(&frame, None).unwrap();
+        let bytes = frame_to_bytes(&frame, Precision::Double, None).unwrap();
         folder.write("frame.0001.safetensors", &bytes).unwrap();
         folder.remove("particles.safetensors").unwrap();
         let mut entry = list::read(&folder, 1).unwrap().entries.remove(0);

@@ -1,16 +1,21 @@
 //! Writing a take.
 
+use super::held::held;
 use super::list::{self, FileEntry, FrameEntry};
 use super::tensors::is_ours;
 use super::{Manifest, ParticlesAtRest, Provenance, TakeError, frame_file, frame_to_bytes, state, tables};
 use crate::frame::Frame;
 use crate::scene::Scene;
+use crate::take_settings::TakeSettings;
 use fissure_files::Folder;
 
 /// Writes a take, frame by frame. [`TakeWriter::open`] makes one.
 #[derive(Debug)]
 pub struct TakeWriter {
     folder: Folder,
+    settings: TakeSettings,
+    /// Of the scene [m].
+    cell_size: f64,
     entries: Vec<FrameEntry>,
     /// What the particles of the first frame are at rest; none until it is needed.
     at_rest: Option<ParticlesAtRest>,
@@ -61,16 +66,22 @@ impl TakeWriter {
         tables::create(folder)?;
         list::write(folder, &[])?;
         folder.sync()?;
-        Ok(Self::with(folder, Vec::new()))
+        Ok(Self::with(folder, scene, Vec::new()))
     }
 
-    /// Goes on after the frames of `entries`.
-    pub(super) fn with(folder: &Folder, entries: Vec<FrameEntry>) -> Self {
-        Self { folder: folder.clone(), entries, at_rest: None }
+    /// Goes on with the take of `scene` after the frames of `entries`.
+    pub(super) fn with(folder: &Folder, scene: &Scene, entries: Vec<FrameEntry>) -> Self {
+        let (settings, cell_size) = (scene.take, scene.cell_size);
+        Self { folder: folder.clone(), settings, cell_size, entries, at_rest: None }
     }
 
-    /// Writes a frame, its rows of the tables, and the line that lists it; when this returns it outlives a power cut. A
-    /// frame that is listed already has to be the same.
+    /// What the take holds of a frame that the solver has made: the frame that can be read of it.
+    pub fn held(&self, frame: Frame) -> Frame {
+        held(frame, self.settings, self.cell_size)
+    }
+
+    /// Writes what [`TakeWriter::held`] has left of a frame, its rows of the tables, and the line that lists it; when
+    /// this returns it outlives a power cut. A frame that is listed already has to be the same.
     ///
     /// `state`: that of the solver at this frame, for [`TakeWriter::open`]. It is on the disk before the frame is
     /// listed, so that a take with all its frames has its last state, too.
@@ -116,7 +127,7 @@ impl TakeWriter {
         } else if self.at_rest.is_none() {
             self.at_rest = frame_file::read_at_rest(&self.folder, &self.entries)?;
         }
-        let bytes = frame_to_bytes(frame, self.at_rest.as_ref()).map_err(bad)?;
+        let bytes = frame_to_bytes(frame, self.settings.precision, self.at_rest.as_ref()).map_err(bad)?;
         let mut contents = vec![(list::file_name(frame.number), bytes)];
         if let Some(at_rest) = self.at_rest.as_ref().filter(|_| is_first) {
             contents.push((frame_file::AT_REST.to_owned(), at_rest.to_bytes().map_err(bad)?));

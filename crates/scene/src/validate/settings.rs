@@ -163,6 +163,7 @@ impl Scene {
         if let Some(branching) = &g.branching {
             validate_branching(&growth("branching"), branching)?;
         }
+        self.take.particles.must_do_for(o)?;
         LENGTH.check(KeyPath::setting("output", "thickness"), "the thickness", o.thickness)?;
         AREA.check(KeyPath::setting("output", "smallest_fragment"), "the smallest fragment", o.smallest_fragment)?;
         SMOOTHING_CELLS.check(KeyPath::setting("output", "smoothing"), "`smoothing`", o.surfaces.smoothing)?;

@@ -50,6 +50,7 @@ pub(crate) fn plate(size: [f64; 2], cell_size: f64, frame_time: f64) -> Scene {
         colliders: Vec::new(),
         toughness: Vec::new(),
         contact: Default::default(),
+        take: Default::default(),
         gravity: Vector::zeros(),
         loads: Vec::new(),
         supports: Vec::new(),

@@ -22,6 +22,7 @@ use crate::fault::{KeyPath, SceneFault, Warning};
 use crate::range::{ITEMS, LENGTH};
 use crate::scene::Scene;
 use crate::settings::ContactSettings;
+use crate::take_settings::TakeSettings;
 use fissure_plane::Vector;
 use std::cell::RefCell;
 
@@ -109,6 +110,7 @@ impl<'d> Resolver<'d> {
             particle_spacing,
             cell_size,
             frames,
+            take: TakeSettings { particles: document.take.particles, precision: document.take.precision },
             output: self.output(side, &frames, cell_size)?,
             colliders: self.colliders(tolerance)?,
             cracks: Vec::new(),

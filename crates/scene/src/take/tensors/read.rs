@@ -96,7 +96,7 @@ impl<'d> Reader<'d> {
     }
     /// Numbers in groups of `N`: the components of vectors and matrices.
     fn groups<const N: usize>(&self, name: &str) -> Result<Vec<[f64; N]>, FrameFileError> {
-        let values = self.f64s(name)?;
+        let values = self.reals(name)?;
         let (groups, rest) = values.as_chunks::<N>();
         if rest.is_empty() { Ok(groups.to_vec()) } else { Err(FrameFileError::Groups { tensor: name.into(), of: N }) }
     }
@@ -106,6 +106,15 @@ impl<'d> Reader<'d> {
     }
     fn f64s(&self, name: &str) -> Result<Vec<f64>, FrameFileError> {
         self.values(name, Dtype::F64, f64::from_le_bytes)
+    }
+    /// Numbers of double or single precision.
+    fn reals(&self, name: &str) -> Result<Vec<f64>, FrameFileError> {
+        match self.0.tensor(name) {
+            Ok(tensor) if tensor.dtype() == Dtype::F32 => {
+                self.values(name, Dtype::F32, |bytes| f64::from(f32::from_le_bytes(bytes)))
+            }
+            _ => self.f64s(name),
+        }
     }
     fn number(&self, name: &str) -> Result<f64, FrameFileError> {
         self.one(name, Dtype::F64, f64::from_le_bytes)

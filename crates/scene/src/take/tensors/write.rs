@@ -2,6 +2,7 @@
 
 use super::{FRAME_FORMAT, FrameFileError, ParticlesAtRest, STATES, TIP_NUMBERS, tip_numbers};
 use crate::frame::{CrackEnd, End, Frame};
+use crate::take_settings::Precision;
 use fissure_plane::{Matrix, Point, Vector};
 use safetensors::tensor::{Dtype, View, serialize};
 use std::borrow::Cow;
@@ -39,6 +40,21 @@ impl Tensors {
     fn f64s(&mut self, name: impl Into<String>, shape: Vec<usize>, values: impl Iterator<Item = f64>) {
         self.add(name, Dtype::F64, shape, values.flat_map(f64::to_le_bytes).collect());
     }
+    fn reals(
+        &mut self,
+        name: impl Into<String>,
+        precision: Precision,
+        shape: Vec<usize>,
+        values: impl Iterator<Item = f64>,
+    ) {
+        match precision {
+            Precision::Double => self.f64s(name, shape, values),
+            Precision::Single => {
+                let bytes = values.flat_map(|value| (value as f32).to_le_bytes()).collect();
+                self.add(name, Dtype::F32, shape, bytes);
+            }
+        }
+    }
     fn numbers(&mut self, name: impl Into<String>, values: impl ExactSizeIterator<Item = f64>) {
         self.f64s(name, vec![values.len()], values);
     }
@@ -55,10 +71,6 @@ impl Tensors {
     fn vectors<'a>(&mut self, name: impl Into<String>, vectors: impl Iterator<Item = &'a Vector>) {
         let values: Vec<f64> = vectors.flat_map(|v| [v.x, v.y]).collect();
         self.f64s(name, vec![values.len() / 2, 2], values.into_iter());
-    }
-    fn matrices(&mut self, name: impl Into<String>, matrices: &[Matrix]) {
-        let values = matrices.iter().flat_map(|m| [m.m11, m.m12, m.m21, m.m22]);
-        self.f64s(name, vec![matrices.len(), 2, 2], values);
     }
     fn offsets(&mut self, name: impl Into<String>, lengths: impl Iterator<Item = usize>) {
         let mut offsets = vec![0_i64];
@@ -79,12 +91,16 @@ impl Tensors {
     }
 }
 
-/// A frame as the bytes of a safetensors file, without what its particles are at rest where that is what `at_rest`
-/// says. Equal frames give equal bytes.
+/// A frame as the bytes of a safetensors file, its particles as exact as `precision` says, without what these are at
+/// rest where that is what `at_rest` says. Equal frames give equal bytes.
 ///
 /// # Errors
 /// When the frame does not pass [`Frame::check`], or is too large for the format.
-pub fn frame_to_bytes(frame: &Frame, at_rest: Option<&ParticlesAtRest>) -> Result<Vec<u8>, FrameFileError> {
+pub fn frame_to_bytes(
+    frame: &Frame,
+    precision: Precision,
+    at_rest: Option<&ParticlesAtRest>,
+) -> Result<Vec<u8>, FrameFileError> {
     frame.check()?;
     let mut t = Tensors::default();
     t.i64s("frame.number", vec![1], std::iter::once(frame.number));
@@ -95,10 +111,14 @@ pub fn frame_to_bytes(frame: &Frame, at_rest: Option<&ParticlesAtRest>) -> Resul
         ParticlesAtRest::of(p).add_to(&mut t);
     }
     t.u32s("particles.piece", p.piece.iter().copied());
-    t.points("particles.position", p.position.iter());
-    t.vectors("particles.velocity", p.velocity.iter());
-    t.matrices("particles.deformation_gradient", &p.deformation_gradient);
-    t.matrices("particles.cauchy_stress", &p.cauchy_stress);
+    let n = p.len();
+    t.reals("particles.position", precision, vec![n, 2], p.position.iter().flat_map(|x| [x.x, x.y]));
+    t.reals("particles.velocity", precision, vec![n, 2], p.velocity.iter().flat_map(|v| [v.x, v.y]));
+    let components = |m: &Matrix| [m.m11, m.m12, m.m21, m.m22];
+    let shape = || vec![n, 2, 2];
+    let gradients = p.deformation_gradient.iter().flat_map(components);
+    t.reals("particles.deformation_gradient", precision, shape(), gradients);
+    t.reals("particles.cauchy_stress", precision, shape(), p.cauchy_stress.iter().flat_map(components));
 
     let o = &frame.outlines;
     t.u32s("outlines.body", o.iter().map(|r| r.body));
