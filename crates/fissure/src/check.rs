@@ -9,7 +9,7 @@ use crate::report::{self, Report};
 use crate::scene_file;
 use fissure_plane::{Point, polyline_length};
 use fissure_scene::{Part, Scene};
-use fissure_sim::{Estimate, Simulation};
+use fissure_sim::{Estimate, Limit, Simulation, dispensable};
 
 /// Validates a scene and prints what it will cost.
 pub(crate) fn check(arguments: &CheckArguments, report: &Report) -> Result<Exit, Failure> {
@@ -17,13 +17,14 @@ pub(crate) fn check(arguments: &CheckArguments, report: &Report) -> Result<Exit,
     let file = scene_file::read(&arguments.scene, &wanted, report)?;
     let scene = file.scene();
     let estimate = Simulation::estimate(scene).map_err(|error| file.show(error.into()))?;
-    report::print(&if report.is_json() { json(scene, &estimate) } else { text(scene, &estimate) })?;
+    let spare = dispensable(scene, &estimate);
+    report::print(&if report.is_json() { json(scene, &estimate, &spare) } else { text(scene, &estimate, &spare) })?;
     Ok(Exit::Done)
 }
 
-fn text(scene: &Scene, estimate: &Estimate) -> String {
+fn text(scene: &Scene, estimate: &Estimate, spare: &[String]) -> String {
     let frames = &scene.frames;
-    let seconds_in_all = estimate.seconds + seconds_of_meshes(scene, estimate);
+    let seconds_in_all = expected_seconds(scene, estimate);
     let rows = [
         ("scene", scene.name.clone()),
         ("bodies", scene.bodies.len().to_string()),
@@ -38,29 +39,49 @@ fn text(scene: &Scene, estimate: &Estimate) -> String {
         ("crack growth", format!("about {} m expected", rounded(estimate.growth.max(0.0), 2))),
         (
             "expected time",
-            format!("about {} in all, {} of it for the solver", duration(seconds_in_all), duration(estimate.seconds)),
+            format!(
+                "about {} in all, {} of it for the solver, most of that {}",
+                duration(seconds_in_all),
+                duration(estimate.seconds),
+                most_of_time(estimate)
+            ),
         ),
         (
             "expected memory",
             format!("{:.0} MiB for the run, meshes included", estimate.memory as f64 / (1024.0 * 1024.0)),
         ),
     ];
-    rows.iter().map(|(name, value)| format!("{name:<16} {value}\n")).collect()
+    let spare = spare.iter().map(|what| ("could do without", what.clone()));
+    rows.into_iter().chain(spare).map(|(name, value)| format!("{name:<16} {value}\n")).collect()
 }
 
-/// "K_I within about 2.5 % at rest, by the shortest crack, `notch`: 4.0 cells".
+/// "highest K within 2.5 %, limited by crack `notch`: 4.0 cells to its tip".
 fn accuracy(scene: &Scene, estimate: &Estimate) -> String {
-    estimate.accuracy.map_or_else(
-        || "no crack has a tip".into(),
-        |accuracy| {
-            format!(
-                "K_I within about {} % at rest, by the shortest crack, `{}`: {:.1} cells to a tip",
-                rounded(100.0 * accuracy.error, 2),
-                scene.cracks[accuracy.crack].name,
-                accuracy.cells
-            )
-        },
-    )
+    let Some(accuracy) = estimate.accuracy else { return "no tip waits for its K".into() };
+    let (name, cells) = (&scene.cracks[accuracy.crack].name, accuracy.cells);
+    let limit = match accuracy.limit {
+        Limit::Crack => format!("crack `{name}`: {cells:.1} cells to a tip"),
+        Limit::Room => format!("what is near a tip of crack `{name}`: {cells:.1} cells away"),
+        Limit::Waves => format!("loads that come at once, on crack `{name}`: {cells:.1} cells to a tip"),
+    };
+    format!("highest K within {} %, limited by {limit}", rounded(100.0 * accuracy.error, 2))
+}
+
+/// What most of the solver's time goes into.
+fn most_of_time(estimate: &Estimate) -> &'static str {
+    let parts = &estimate.parts;
+    let named = [
+        (parts.motion, "for motion"),
+        (parts.looks, "for looks at tips"),
+        (parts.growth, "for growth"),
+        (parts.frames, "for the start and frames"),
+    ];
+    named.into_iter().fold((0.0, ""), |most, part| if part.0 > most.0 { part } else { most }).1
+}
+
+/// Wall time of `fissure run` [s].
+pub(crate) fn expected_seconds(scene: &Scene, estimate: &Estimate) -> f64 {
+    estimate.seconds + seconds_of_meshes(scene, estimate)
 }
 
 /// `value` with so many digits.
@@ -68,7 +89,7 @@ fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.0$e}", digits - 1).parse().unwrap_or(value)
 }
 
-fn json(scene: &Scene, estimate: &Estimate) -> String {
+fn json(scene: &Scene, estimate: &Estimate, spare: &[String]) -> String {
     let value = serde_json::json!({
         "scene": scene.name,
         "hash": scene.hash,
@@ -85,9 +106,14 @@ fn json(scene: &Scene, estimate: &Estimate) -> String {
         "first_frame": scene.frames.first,
         "last_frame": scene.frames.last,
         "growth": estimate.growth,
-        "mode_1_error": estimate.accuracy.map(|accuracy| accuracy.error),
+        "highest_k_error": estimate.accuracy.map(|accuracy| accuracy.error),
+        "highest_k_limit": estimate.accuracy.map(|accuracy| format!("{:?}", accuracy.limit).to_lowercase()),
+        "could_do_without": spare,
         "solver_seconds": estimate.seconds,
-        "seconds": estimate.seconds + seconds_of_meshes(scene, estimate),
+        "motion_seconds": estimate.parts.motion,
+        "look_seconds": estimate.parts.looks,
+        "growth_seconds": estimate.parts.growth,
+        "seconds": expected_seconds(scene, estimate),
         "memory_bytes": estimate.memory,
     });
     format!("{value}\n")

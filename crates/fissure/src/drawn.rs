@@ -44,11 +44,16 @@ pub(crate) fn refuse_options(arguments: &SceneArguments) -> Result<(), Failure> 
     }
 }
 
-/// Makes the scene of a drawing, shows it, writes it if it is wanted, and loads it.
+/// Makes the scene of a drawing, shows it, writes it if it is wanted, and loads it with `overrides` on top.
 ///
 /// # Errors
 /// When the drawing does not say what is what, the scene cannot be simulated, or an edited scene is in the way.
-pub(crate) fn load(arguments: &SceneArguments, wanted: &Wanted<'_>, report: &Report) -> Result<Loaded, Failure> {
+pub(crate) fn load(
+    arguments: &SceneArguments,
+    overrides: &[String],
+    wanted: &Wanted<'_>,
+    report: &Report,
+) -> Result<Loaded, Failure> {
     let drawing = &arguments.scene;
     let Some(material) = arguments.material.clone() else {
         let known: Vec<String> = fissure_scene::material_presets().into_iter().map(|m| m.name).collect();
@@ -61,9 +66,9 @@ pub(crate) fn load(arguments: &SceneArguments, wanted: &Wanted<'_>, report: &Rep
     let draft = fissure_scene::draft(drawing, &reference(&folder, drawing)?, &options)?;
     let path = folder.join(SCENE_FILE);
     // Loaded before it is written: what cannot be simulated leaves nothing behind.
-    let loaded = draft.load(&path, &arguments.overrides)?;
+    let loaded = draft.load(&path, overrides)?;
     if wanted.written {
-        write(&Folder::new(&folder), &draft, arguments, wanted, report)?;
+        write(&Folder::new(&folder), &draft, overrides, wanted, report)?;
     } else {
         report.note(draft.text());
     }
@@ -74,12 +79,12 @@ pub(crate) fn load(arguments: &SceneArguments, wanted: &Wanted<'_>, report: &Rep
 fn write(
     folder: &Folder,
     draft: &Draft,
-    arguments: &SceneArguments,
+    overrides: &[String],
     wanted: &Wanted<'_>,
     report: &Report,
 ) -> Result<(), Failure> {
     let path = folder.place(SCENE_FILE)?;
-    let command = command(&path, arguments, wanted);
+    let command = command(&path, overrides, wanted);
     let there = folder.read(SCENE_FILE)?;
     let there = there.as_ref().map(|bytes| String::from_utf8_lossy(bytes));
     if there.as_ref().is_some_and(|text| !Draft::is_untouched(text)) {
@@ -99,10 +104,10 @@ fn write(
 }
 
 /// The command that runs the scene that was made, into the same folder.
-fn command(path: &Path, arguments: &SceneArguments, wanted: &Wanted<'_>) -> String {
+fn command(path: &Path, overrides: &[String], wanted: &Wanted<'_>) -> String {
     let mut words = vec!["fissure run".to_owned(), quoted(&path.to_string_lossy())];
     words.extend(wanted.output.map(|folder| format!("--output {}", quoted(&folder.to_string_lossy()))));
-    words.extend(arguments.overrides.iter().map(|set| format!("--set {}", quoted(set))));
+    words.extend(overrides.iter().map(|set| format!("--set {}", quoted(set))));
     words.join(" ")
 }
 

@@ -71,6 +71,11 @@ impl Report {
         Self { log: talk.log, quiet: talk.quiet, terminal: io::stderr().is_terminal(), bar: Mutex::new(None) }
     }
 
+    /// A voice that says errors only.
+    pub(crate) fn silent(&self) -> Self {
+        Self { quiet: true, bar: Mutex::new(None), ..*self }
+    }
+
     /// Whether programs listen.
     pub(crate) fn is_json(&self) -> bool {
         self.log == LogFormat::Json

@@ -2,6 +2,7 @@
 
 use crate::args::SceneArguments;
 use crate::caution::Caution;
+use crate::dial;
 use crate::drawn::{self, Wanted};
 use crate::exit::Exit;
 use crate::failure::{Failure, Snippet};
@@ -37,13 +38,16 @@ impl SceneFile {
 /// # Errors
 /// When the scene cannot be simulated, or something will hardly go well and the user wants that to count.
 pub(crate) fn read(arguments: &SceneArguments, wanted: &Wanted<'_>, report: &Report) -> Result<SceneFile, Failure> {
-    let mut loaded = if drawn::is_drawing(&arguments.scene) {
-        drawn::load(arguments, wanted, report)?
-    } else {
-        drawn::refuse_options(arguments)?;
-        let thickness = wanted.thickness.map(|thickness| format!("output.thickness={thickness:?}"));
-        let overrides: Vec<String> = arguments.overrides.iter().cloned().chain(thickness).collect();
-        fissure_scene::load_with_warnings(&scene_in(&arguments.scene)?, &overrides)?
+    let mut loaded = match arguments.wish() {
+        None => load(arguments, &arguments.overrides, wanted, report)?,
+        Some(wish) => {
+            // Nothing is written and said but of the scene that is run.
+            let first = Wanted { written: false, ..*wanted };
+            let as_it_is = load(arguments, &arguments.overrides, &first, &report.silent())?;
+            let chosen = dial::overrides(&as_it_is.scene, wish).map_err(|failure| SceneFile(as_it_is).show(failure))?;
+            report.note(&format!("chosen: {}", chosen.join(", ")));
+            load(arguments, &[&arguments.overrides[..], &chosen].concat(), wanted, report)?
+        }
     };
     let foreseen = fissure_sim::warnings(&loaded.scene);
     loaded.warn(foreseen);
@@ -58,6 +62,22 @@ pub(crate) fn read(arguments: &SceneArguments, wanted: &Wanted<'_>, report: &Rep
         )),
         _ => Ok(SceneFile(loaded)),
     }
+}
+
+/// Loads a scene with `overrides` on top, or makes that of a drawing.
+fn load(
+    arguments: &SceneArguments,
+    overrides: &[String],
+    wanted: &Wanted<'_>,
+    report: &Report,
+) -> Result<Loaded, Failure> {
+    if drawn::is_drawing(&arguments.scene) {
+        return drawn::load(arguments, overrides, wanted, report);
+    }
+    drawn::refuse_options(arguments)?;
+    let thickness = wanted.thickness.map(|thickness| format!("output.thickness={thickness:?}"));
+    let overrides: Vec<String> = overrides.iter().cloned().chain(thickness).collect();
+    Ok(fissure_scene::load_with_warnings(&scene_in(&arguments.scene)?, &overrides)?)
 }
 
 /// The scene file meant by `path`: itself, or the scene in a folder.

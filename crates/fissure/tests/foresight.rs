@@ -178,3 +178,34 @@ fn a_folder_stands_for_the_scene_or_the_take_in_it() {
     assert_eq!(fissure(&["check", "mine"]).0, 2);
     assert_eq!(fissure(&["check", "none.toml"]).0, 3);
 }
+
+/// Truth: the same scene with the spacing written down. What is chosen is said, keeps the error or the time that was
+/// asked for, and is what the run has; what is not to be had is refused with what is.
+#[test]
+fn accuracy_and_budget_choose_the_spacing() {
+    let plate = format!("name = \"plate\"\n{PLATE}");
+    let said_by = |more: &[&str]| said(&plate, "check", &[&["--log", "json"], more].concat());
+    let (code, text, told) = said_by(&["--accuracy", "3%"]);
+    assert_eq!(code, 0, "{told}");
+    let found: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let number = |key: &str| found[key].as_f64().unwrap();
+    let spacing = number("particle_spacing");
+    assert!(told.contains(&format!("chosen: grid.particle_spacing={spacing:?}")), "{told}");
+    assert!(number("highest_k_error") <= 0.03 && number("highest_k_error") > 0.027, "{text}");
+    let written = format!("grid.particle_spacing={spacing:?}");
+    assert_eq!(said_by(&["--set", &written]).1, text);
+
+    let (code, text, told) = said_by(&["--budget", "3s"]);
+    assert_eq!(code, 0, "{told}");
+    let found: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let seconds = found["seconds"].as_f64().unwrap();
+    assert!(seconds < 3.1 && seconds > 2.0, "{text}");
+
+    for (wish, word) in [(["--accuracy", "0.01%"], "ask for 1.00 % or more"), (["--budget", "0.001s"], "the coarsest")]
+    {
+        let (code, _, told) = said_by(&wish);
+        assert!(code == 2 && told.contains(word), "{code} {told}");
+    }
+    let (code, _, told) = said_by(&["--accuracy", "3%", "--budget", "3s"]);
+    assert!(code == 2 && told.contains("cannot be used with"), "{told}");
+}

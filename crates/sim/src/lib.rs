@@ -105,13 +105,13 @@ mod updated;
 mod wide;
 
 pub use error::SimulationError;
-pub use foresight::{Accuracy, warnings};
+pub use foresight::{Accuracy, Limit, dispensable, warnings};
 pub use material::constitutive::{
     PlasticStep, cauchy_stress, energy_density, first_piola_stress, hardening_factor, kirchhoff_stress, plastic_step,
     volume_change,
 };
 pub use material::elastic::Elastic;
-pub use simulation::{Counts, Estimate, Progress, Simulation, Stage};
+pub use simulation::{Counts, DialError, Estimate, Progress, Simulation, Stage, TimeParts, Wish};
 pub use tip::contours::ContourReading;
 pub use tip::stress_intensity::{StressIntensity, crack_speed_factors, universal_function};
 pub use tip::williams::{TipField, moving_tip_fields, williams_fields};

@@ -34,7 +34,9 @@
 mod case;
 mod cases;
 mod cpu_time;
+mod dial;
 mod family;
+mod features;
 mod interpolate;
 mod list;
 mod placed;
@@ -52,6 +54,8 @@ mod table;
 pub use case::{Case, Options};
 pub use cases::edge_crack::{EdgeCrack, EdgeCrackResult};
 pub use cpu_time::cpu_time;
+pub use dial::{DialTrial, dial_trial};
+pub use features::{FEATURES, Feature, FeatureCost};
 pub use list::{CASES, find};
 pub use rates::{Rate, TIMED_PLATES, TimedPlate};
 pub use report::{Expected, Progress, Report, Row, Spread};

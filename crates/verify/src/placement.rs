@@ -100,6 +100,11 @@ impl Placement {
         }
     }
 
+    /// The same with the spacing of the scene.
+    pub(crate) fn at_own_spacing(self) -> Self {
+        Self { spacing: 1.0, ..self }
+    }
+
     /// Turned by any angle [rad].
     pub(crate) fn by_angle(angle: f64) -> Self {
         Self { turn: Turn::Angle(angle), ..Self::NATURAL }

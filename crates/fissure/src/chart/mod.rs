@@ -2,7 +2,9 @@
 //! goes on where it was interrupted.
 
 mod accuracy;
+mod dial;
 mod examples;
+mod features;
 mod origin;
 mod speed;
 mod stability;
@@ -40,6 +42,8 @@ pub(crate) fn chart(arguments: &ChartArguments, report: &Report) -> Result<Exit,
         if arguments.name.is_none_or(|name| name == chart) {
             match chart {
                 ChartName::Accuracy => accuracy::chart(&charting)?,
+                ChartName::Features => features::chart(&charting)?,
+                ChartName::Dial => dial::chart(&charting)?,
                 ChartName::Stability => stability::chart(&charting)?,
                 ChartName::Speed => speed::chart(&charting)?,
                 ChartName::Stages => stages::chart(&charting, &arguments.examples)?,

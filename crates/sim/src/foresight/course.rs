@@ -4,8 +4,8 @@ use super::drawn_tip::DrawnTip;
 use super::toughness;
 use crate::boundary::collider::Obstacle;
 use crate::material::elastic::Elastic;
-use fissure_plane::{Region, Vector};
-use fissure_scene::Scene;
+use fissure_plane::{Region, Vector, polyline_length};
+use fissure_scene::{BranchKind, Guide, GuideBranch, Scene};
 
 /// Part of the way ahead that tips make where there are so many cracks that they end on each other's new parts.
 const SHARED_WAY: f64 = 0.5;
@@ -15,6 +15,8 @@ const MANY_TIPS: usize = 16;
 const IDLE_LOOKS: f64 = 0.4;
 /// A tip is live for so many times as long as the crossing of its way takes: it waits for its load as well.
 const LIVE_CROSSINGS: f64 = 2.0;
+/// What a tip may feel at most is twice what it does feel, in the median: below so much of its toughness it stays.
+const LIKELY_TO_MOVE: f64 = 2.0;
 /// Mean speed of a running tip as a part of its limit.
 const MEAN_SPEED: f64 = 0.8;
 
@@ -45,13 +47,14 @@ impl Course {
         // Supports that move open cracks as slowly as they move.
         let is_slow = scene.loads.is_empty() && !scene.supports.is_empty();
         for tip in &tips {
-            let moves = tip.is_scheduled() || reached.get(tip.index).is_none_or(|&load| load >= 1.0);
+            let moves = tip.is_scheduled()
+                || reached.get(tip.index).is_none_or(|&load| load >= LIKELY_TO_MOVE || load.is_nan());
             let speed = MEAN_SPEED * tip.speed_limit(scene, elastic);
             let way = part * tip.way(scene);
             if !moves || !way.is_finite() {
                 continue;
             }
-            course.growth += way.min(speed * running);
+            course.growth += way.min(speed * running) + tip.crack.guide(tip.end).map_or(0.0, length_of_branches);
             if !tip.is_scheduled() && !is_slow && speed > 0.0 {
                 course.watched -= (running - LIVE_CROSSINGS * running.min(way / speed)).max(0.0);
             }
@@ -60,8 +63,17 @@ impl Course {
     }
 }
 
+/// Length of all that branches off a guide, at any depth [m].
+fn length_of_branches(guide: &Guide) -> f64 {
+    let of = |branch: &GuideBranch| match &branch.kind {
+        BranchKind::Begins { guide, .. } => polyline_length(&guide.points) + length_of_branches(guide),
+        BranchKind::Drawn { .. } => 0.0,
+    };
+    guide.branches.iter().map(of).sum()
+}
+
 /// When something first acts on a crack [s]: at once, unless the bodies have to fall or fly onto a collider first.
-fn first_contact(scene: &Scene, end: f64) -> f64 {
+pub(super) fn first_contact(scene: &Scene, end: f64) -> f64 {
     const TIMES: u32 = 256;
     if scene.colliders.is_empty() || !scene.loads.is_empty() || !scene.supports.is_empty() {
         return 0.0;

@@ -6,6 +6,7 @@
 mod accuracy;
 mod buried;
 mod course;
+mod dispensable;
 mod drawn_tip;
 mod driving;
 mod groups;
@@ -19,9 +20,10 @@ mod toughness;
 mod wholeness;
 mod width;
 
-pub use accuracy::Accuracy;
 pub(crate) use accuracy::accuracy;
+pub use accuracy::{Accuracy, Limit};
 pub(crate) use course::Course;
+pub use dispensable::dispensable;
 pub(crate) use strain::overload;
 
 use crate::material::elastic::Elastic;

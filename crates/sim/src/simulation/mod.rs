@@ -5,6 +5,7 @@ mod advance;
 mod branching_off;
 mod contours;
 mod counts;
+mod dial;
 mod estimate;
 #[cfg(test)]
 mod far_apart;
@@ -17,7 +18,8 @@ mod view;
 mod watch;
 
 pub use counts::Counts;
-pub use estimate::Estimate;
+pub use dial::{DialError, Wish};
+pub use estimate::{Estimate, TimeParts};
 pub use stages::Stage;
 
 use crate::crack::cracks::Cracks;
