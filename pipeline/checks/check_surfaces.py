@@ -16,6 +16,7 @@ Reads the GLB files of the part `cracked` in each FOLDER, made from TAKE. One ro
     area      |area of all objects / (area in the first frame x mean det F) - 1|
     overlap   part of the smaller of two objects of a frame that lies in the other one
     open      objects that are not watertight, by themselves or when trimesh merges their vertices
+    merged    objects that are not when all vertices nearer than 1e-4 of the size of the body are merged
 
 Fails where a solid is open, a volume is off by more than 1e-6, an area by more than 1e-3, or where two objects have more
 than 1e-4 of the smaller one in common.
@@ -26,6 +27,8 @@ import pathlib
 import sys
 
 import numpy
+import scipy.sparse.csgraph
+import scipy.spatial
 import shapely
 from check_fragments import AREA, VOLUME, check_solid
 from check_overlap import MOST as OVERLAP
@@ -33,9 +36,11 @@ from glb import Glb
 from safetensors.numpy import load_file
 
 SHARP = 20.0
+# Vertices nearer than this part of the body are merged.
+NEAR = 1e-4
 # A corner that turns by less is straight for the eye.
 STRAIGHT = 2.0
-COLUMNS = ("angle", "below 20", "needle", "edge", "chord", "turn", "flips", "volume", "area", "overlap", "open")
+COLUMNS = ("angle", "below 20", "needle", "edge", "chord", "turn", "flips", "volume", "area", "overlap", "open", "merged")
 
 
 def cap(vertices, faces):
@@ -129,6 +134,18 @@ def wall_edges(vertices, faces):
     return numpy.array(found).reshape(-1, 2, 2)
 
 
+def is_open(vertices, faces, distance):
+    """Whether a solid is not closed and manifold any more when vertices nearer than `distance` are merged."""
+    pairs = scipy.spatial.cKDTree(vertices).query_pairs(distance, output_type="ndarray")
+    count = len(vertices)
+    near = scipy.sparse.coo_matrix((numpy.ones(len(pairs)), pairs.T), shape=(count, count))
+    merged = scipy.sparse.csgraph.connected_components(near, directed=False)[1][faces].astype(numpy.int64)
+    merged = merged[(merged != numpy.roll(merged, 1, axis=1)).all(axis=1)]
+    ends = numpy.concatenate([merged[:, [0, 1]], merged[:, [1, 2]], merged[:, [2, 0]]])
+    edges, times = numpy.unique(ends[:, 0] * count + ends[:, 1], return_counts=True)
+    return (times > 1).any() or not numpy.isin(ends[:, 1] * count + ends[:, 0], edges).all()
+
+
 def worst_overlap(areas):
     """Part of the smaller one that two of some regions have in common, at most."""
     tree = shapely.STRtree(areas)
@@ -148,7 +165,7 @@ def measure(take, folder):
         sys.exit(f"{folder}: no GLB file of the part `cracked`")
     low = {"angle": 180.0, "edge": numpy.inf}
     high = dict.fromkeys(("needle", "chord", "turn", "volume", "area", "overlap"), 0.0)
-    below = triangles_seen = segments = flipped = opened = 0
+    below = triangles_seen = segments = flipped = opened = merged = 0
     first, size = None, 1.0
     for record in records:
         glb = Glb(folder / record["file"])
@@ -168,6 +185,7 @@ def measure(take, folder):
                     high["chord"], high["turn"] = max(high["chord"], height / size), max(high["turn"], turn)
             problems, part = check_solid(vertices, faces)
             opened += bool(problems)
+            merged += is_open(vertices, faces, NEAR * size)
             volume += part
             regions.append(shapely.union_all(shapely.polygons(triangles)))
         for vertices, faces in inside(glb):
@@ -179,8 +197,9 @@ def measure(take, folder):
         first = first or area
         high["area"] = max(high["area"], abs(area / first - 1))
         high["overlap"] = max(high["overlap"], worst_overlap(regions))
-    shares = {"below 20": below / triangles_seen, "flips": flipped / segments if segments else 0.0, "open": opened}
-    return {**low, **high, **shares}
+    flipped = flipped / segments if segments else 0.0
+    counts = {"below 20": below / triangles_seen, "flips": flipped, "open": opened, "merged": merged}
+    return {**low, **high, **counts}
 
 
 def inside(glb):

@@ -1,13 +1,15 @@
 //! The bodies as solids, with or without their cracks.
 
 use crate::boolean::{Edge, Shape, material, twice_area};
+use crate::closed::shifts as closed;
 use crate::edges::MovedLines;
 use crate::error::PostError;
 use crate::explode::offsets;
 use crate::extrude::Extrusion;
-use crate::held_open::{parted_segments, shifts as held_open};
+use crate::held_open::{parted_points, shifts as held_open};
 use crate::interior::Interior;
 use crate::mesh::{Content, Mesh, object_name};
+use crate::needles::blunt_needles;
 use crate::options::PostOptions;
 use crate::outline::outline_edges;
 use crate::overlaps::{Enclosed, share_out_overlaps};
@@ -15,7 +17,7 @@ use crate::pieces::numbers;
 use crate::pinch::part_pinches;
 use crate::rest_cut::rest_cap;
 use crate::short_edges::{Growth, without_short_edges};
-use crate::slivers::without_slivers;
+use crate::slivers::{fill_narrow_holes, without_slivers};
 use crate::slot::Slot;
 use crate::smooth::SmoothCracks;
 use crate::snap::Grid;
@@ -43,13 +45,17 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
     let mut shifts = shifts(scene, frame.time, &cracks.cracks, options);
     let beyond = farthest(offsets.values()) + farthest(shifts.iter().flatten().flat_map(|s| [&s.above, &s.below]));
     let grids = grids(scene, frame, &cracks.cracks, beyond)?;
-    // Triangles that do not depend on the opening have two sides everywhere.
-    if options.walls == Walls::All || options.cut == Cut::Rest {
-        let parted = parted_segments(&cracks.cracks, &fragments, &numbers);
-        for ((crack, parted), shifts) in cracks.cracks.iter().zip(parted).zip(&mut shifts) {
-            let held = held_open(&widened(crack, shifts), &parted, grids[crack.body as usize]);
-            shifts.iter_mut().zip(held).for_each(|(shift, held)| *shift = *shift + held);
-        }
+    let parted = parted_points(&cracks.cracks, &fragments, &numbers);
+    for ((crack, parted), shifts) in cracks.cracks.iter().zip(parted).zip(&mut shifts) {
+        let shown = widened(crack, shifts);
+        let more = if holds_open(options) {
+            held_open(&shown, &parted, grids[crack.body as usize])
+        } else if options.shortest_edge == 0.0 {
+            continue;
+        } else {
+            closed(&shown, &parted, options.shortest_edge * size(scene, crack.body))
+        };
+        shifts.iter_mut().zip(more).for_each(|(shift, more)| *shift = *shift + more);
     }
     let lines = MovedLines::new(scene, frame, &cracks, shifts);
     let mut objects = BTreeMap::<ObjectKey, Vec<Vec<Vec<SourceEdge>>>>::new();
@@ -76,6 +82,18 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
         mesh.moved(grids[object.0 as usize].nearest(offset))
     };
     Ok(meshes.into_iter().map(apart).collect())
+}
+
+/// Whether cracks within fragments have walls even where they are closed: they are to be shown, or triangles do not
+/// depend on the opening and have two sides everywhere.
+fn holds_open(options: &PostOptions) -> bool {
+    options.walls == Walls::All || options.cut == Cut::Rest
+}
+
+/// The longer side of a body at rest [m].
+fn size(scene: &Scene, body: u32) -> f64 {
+    let (low, high) = scene.bodies[body as usize].region.bounds();
+    (high - low).amax()
 }
 
 /// How far the faces of each crack are moved at each of its points: as it is to be shown.
@@ -141,7 +159,7 @@ impl<'a> Solids<'a> {
     /// What the boundary of fragment `piece` encloses as it is now; nothing where that is no more than rounding.
     fn enclosed(&self, body: u32, piece: u32, sources: Vec<SourceEdge>) -> Result<Enclosed, PostError> {
         let grid = self.grids[body as usize];
-        let least = self.options.shortest_edge * self.size(body) / grid.step;
+        let least = self.options.shortest_edge * size(self.scene, body) / grid.step;
         let shapes = without_slivers(material(&sources));
         let mut enclosed = Enclosed { body, piece, grid, shapes, sources, least, has_lost: false };
         self.tidy(&mut enclosed, Growth::Allowed)?;
@@ -157,8 +175,17 @@ impl<'a> Solids<'a> {
                 PostError::Pinch { frame: self.frame.number, body: body.name.clone(), x: place.x, y: place.y }
             })?;
         of.shapes = without_slivers(parted);
+        let sources = &mut of.sources;
+        if !holds_open(self.options) {
+            let is_inside = |edge: &Edge| sources[edge.source.0 as usize].slot == Slot::Inside;
+            fill_narrow_holes(&mut of.shapes, of.least, is_inside);
+        }
         let is_drawn = |edge: &Edge, source: &SourceEdge| is_drawn(&body.region, edge, source);
-        without_short_edges(&mut of.shapes, of.least, growth, &mut of.sources, is_drawn);
+        without_short_edges(&mut of.shapes, of.least, growth, sources, is_drawn);
+        if !holds_open(self.options) {
+            blunt_needles(&mut of.shapes, of.least, growth, sources);
+            without_short_edges(&mut of.shapes, of.least, growth, sources, is_drawn);
+        }
         Ok(())
     }
 
@@ -217,14 +244,8 @@ impl<'a> Solids<'a> {
             thickness: self.options.thickness,
             crease_angle: self.options.crease_angle,
             texture_origin: self.scene.bodies[body as usize].region.bounds().0,
-            texture_size: self.size(body),
+            texture_size: size(self.scene, body),
         }
-    }
-
-    /// The longer side of a body at rest [m].
-    fn size(&self, body: u32) -> f64 {
-        let (low, high) = self.scene.bodies[body as usize].region.bounds();
-        (high - low).amax()
     }
 
     /// The solid of some polygons, with what their corners within carry; none of none.

@@ -2,21 +2,21 @@
 
 use crate::snap::Grid;
 use crate::widening::Shift;
-use fissure_scene::{CrackEnd, CrackFrame, Fragments, Line, Vector};
+use fissure_scene::{BoundaryEdge, CrackEnd, CrackFrame, Fragment, Fragments, Line, Point, Vector};
+use std::collections::BTreeMap;
 
 /// Least width of a crack that is held open, in grid steps: one that narrows to tips right beside its widest point is
 /// still twice as wide as what counts as rounding.
 const LEAST: f64 = 8.0;
 
-/// For each point of `crack` how far its faces have to move so that the crack is open there. `parted`: the segments
+/// For each point of `crack` how far its faces have to move so that the crack is open there. `parted`: the points
 /// that part two fragments, where nothing moves.
 pub(crate) fn shifts(crack: &CrackFrame, parted: &[bool], grid: Grid) -> Vec<Shift> {
     let last = crack.rest.len().saturating_sub(1);
     let middle = |i: usize| nalgebra::center(&crack.above[i], &crack.below[i]);
     let shift = |i: usize| {
         let is_tip = (i == 0 && crack.start == CrackEnd::Tip) || (i == last && crack.end == CrackEnd::Tip);
-        let beside = [i.saturating_sub(1), i.min(last.saturating_sub(1))];
-        if is_tip || beside.iter().any(|&segment| parted.get(segment).is_none_or(|parted| *parted)) {
+        if is_tip || parted[i] {
             return Shift::default();
         }
         let along = middle((i + 1).min(last)) - middle(i.saturating_sub(1));
@@ -28,20 +28,33 @@ pub(crate) fn shifts(crack: &CrackFrame, parted: &[bool], grid: Grid) -> Vec<Shi
     (0..crack.rest.len()).map(shift).collect()
 }
 
-/// For each segment of each of `cracks` whether it parts two fragments that have different numbers.
-pub(crate) fn parted_segments(cracks: &[CrackFrame], fragments: &Fragments, numbers: &[u32]) -> Vec<Vec<bool>> {
-    let none = || cracks.iter().map(|c| vec![None; c.rest.len().saturating_sub(1)]).collect();
-    let mut sides: [Vec<Vec<Option<u32>>>; 2] = [none(), none()];
-    for (fragment, &number) in fragments.list().iter().zip(numbers) {
-        for edge in fragment.boundaries.iter().flatten() {
-            let segment = edge.points[0].min(edge.points[1]);
-            match edge.line {
-                Line::Ring(_) => {}
-                Line::Above(crack) => sides[0][crack][segment] = Some(number),
-                Line::Below(crack) => sides[1][crack][segment] = Some(number),
+/// For each point of each of `cracks` whether it is an end of something that parts two fragments of different numbers.
+pub(crate) fn parted_points(cracks: &[CrackFrame], fragments: &Fragments, numbers: &[u32]) -> Vec<Vec<bool>> {
+    // A stretch of a crack is known by its ends, in the direction of its face above.
+    let key = |[a, b]: [Point; 2]| [a.x, a.y, b.x, b.y].map(f64::to_bits);
+    let mut sides = BTreeMap::<_, [Option<u32>; 2]>::new();
+    let of = |(fragment, &number): (&'_ Fragment, &u32)| {
+        fragment.boundaries.iter().flatten().map(move |edge| (*edge, number)).collect::<Vec<_>>()
+    };
+    let edges: Vec<(BoundaryEdge, u32)> = fragments.list().iter().zip(numbers).flat_map(of).collect();
+    let stretch = |edge: &BoundaryEdge| match edge.line {
+        Line::Ring(_) => None,
+        Line::Above(crack) => Some((crack, 0, (crack, key(edge.rest)))),
+        Line::Below(crack) => Some((crack, 1, (crack, key([edge.rest[1], edge.rest[0]])))),
+    };
+    for (edge, number) in &edges {
+        if let Some((_, side, stretch)) = stretch(edge) {
+            sides.entry(stretch).or_default()[side] = Some(*number);
+        }
+    }
+    let mut parted: Vec<Vec<bool>> = cracks.iter().map(|crack| vec![false; crack.rest.len()]).collect();
+    for (edge, _) in &edges {
+        let Some((crack, _, stretch)) = stretch(edge) else { continue };
+        if sides.get(&stretch).is_some_and(|[above, below]| above != below) {
+            for (point, span) in edge.points.into_iter().zip([0.0, 1.0]) {
+                parted[crack][point] |= edge.span.contains(&span);
             }
         }
     }
-    let [above, below] = sides;
-    above.iter().zip(&below).map(|(a, b)| a.iter().zip(b).map(|(a, b)| a != b).collect()).collect()
+    parted
 }

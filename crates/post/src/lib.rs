@@ -9,13 +9,15 @@
 //!    length of the material at their ends. `outline`: a body without its cracks.
 //!    `smooth`: paths of cracks without their zigzag. `rest_cut`: triangles at rest that the material carries, in place
 //!    of steps 3 to 7.
+//!    `closed`: cracks within a fragment are closed where they are hardly open.
 //! 3. `boolean`: a fragment is where its own edges wind around a place at least once. An open crack in it takes one
 //!    off; where its faces overlap one is added, so cracks that are closed have no walls, unless all are to have some
 //!    (`held_open`), or cracks are shown wider than they are (`widening`). Fragments may turn, fly
 //!    apart, touch and come to lie on each other as they like: each keeps its walls.
 //! 4. `slivers`: what is mere rounding goes.
 //! 5. `pinch`: contours that touch in a point are parted, so that the solid is manifold for every reader.
-//! 6. `short_edges`: edges that readers which merge by distance would close are taken out.
+//! 6. `short_edges`, `needles`: edges that readers which merge by distance would close are taken out, and corners that
+//!    are so sharp that these would close them end bluntly.
 //! 7. `overlaps`: fragments that lie in each other a little share the middle; then steps 4 to 6 once more.
 //! 8. `triangulate`, `interior`, `extrude`: caps of triangles without small angles, and walls, with normals, texture
 //!    coordinates, velocities and material slots.
@@ -31,6 +33,7 @@
 #[doc(hidden)]
 pub mod bench;
 mod boolean;
+mod closed;
 mod colliders;
 mod cracked;
 mod edges;
@@ -44,6 +47,7 @@ mod interior;
 #[cfg(feature = "files")]
 mod manifest;
 mod mesh;
+mod needles;
 mod opening;
 mod options;
 mod outline;

@@ -145,7 +145,7 @@ fn position(triangles: &Delaunay, vertex: usize) -> Point2<f64> {
 }
 
 /// The grid point next to `place` on `edge` that lies on it or to its left, where the material is.
-fn inwards(edge: &Edge, place: Point2<f64>) -> GridPoint {
+pub(crate) fn inwards(edge: &Edge, place: Point2<f64>) -> GridPoint {
     let (along, up) = (edge.b.x - edge.a.x, edge.b.y - edge.a.y);
     let (x, y) = (place.x.floor() as i64, place.y.floor() as i64);
     let around = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| GridPoint::new(x + i, y + j));

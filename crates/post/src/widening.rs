@@ -90,7 +90,7 @@ impl Widening {
 }
 
 /// Unit normal of a face at a point, to the left of the way along the crack.
-fn normal(face: &[Point], i: usize) -> Vector {
+pub(crate) fn normal(face: &[Point], i: usize) -> Vector {
     let along = face[(i + 1).min(face.len() - 1)] - face[i.saturating_sub(1)];
     Vector::new(-along.y, along.x).try_normalize(0.0).unwrap_or_default()
 }

@@ -1,0 +1,231 @@
+//! Corners so sharp that both sides are nearer to each other, far along them, than readers merge vertices: needles of
+//! material, and cracks that narrow to a point.
+//!
+//! ```text
+//!     ────────╲___            ───────╮
+//!     ────────╱      becomes  ───────╯
+//! ```
+
+use crate::boolean::{Contour, Edge, Shape, SourceIndex};
+use crate::short_edges::Growth;
+use crate::slot::Slot;
+use crate::snap::GridPoint;
+use crate::source::SourceEdge;
+use crate::triangulate::inwards;
+use spade::Point2;
+
+/// Corners below this angle are sharp [degrees]: new corners in the middle of the shortest edges beside them would be
+/// nearer to each other than half of these.
+const SHARP: f64 = 60.0;
+/// Sides are followed over so many edges.
+const MOST_EDGES: usize = 64;
+
+/// Ends sharp corners bluntly where their sides are `least` grid steps apart. `sources` receives the edges across.
+/// Corners of outlines stay, and those of cracks where polygons may hardly grow.
+pub(crate) fn blunt_needles(shapes: &mut [Shape], least: f64, growth: Growth, sources: &mut Vec<SourceEdge>) {
+    for contour in shapes.iter_mut().flatten() {
+        let mut i = 0;
+        while i < contour.len() {
+            match needle(contour, i, least, growth, sources) {
+                // What comes after may be sharp again.
+                Some(needle) => {
+                    needle.cut(contour, sources);
+                    i = 0;
+                }
+                None => i += 1,
+            }
+        }
+    }
+}
+
+/// A sharp corner between two edges of a contour, and where it is to end.
+struct Needle {
+    /// The edges before and after the corner on which it ends, and where.
+    before: usize,
+    after: usize,
+    ends: [GridPoint; 2],
+}
+
+/// The needle at the end of edge `corner` of a contour; none where that is not sharp, where it stays, or where its
+/// sides do not part.
+fn needle(contour: &Contour, corner: usize, least: f64, growth: Growth, sources: &[SourceEdge]) -> Option<Needle> {
+    let count = contour.len();
+    let next = (corner + 1) % count;
+    let (one, two) = (&contour[corner], &contour[next]);
+    let (back, forth) = (way(one.b, one.a), way(two.a, two.b));
+    let turn = back.0 * forth.1 - back.1 * forth.0;
+    if turn.atan2(back.0 * forth.0 + back.1 * forth.1).abs() >= SHARP.to_radians() {
+        return None;
+    }
+    // Going on to the left of the way back encloses nothing: the corner of a crack.
+    let is_crack = turn > 0.0;
+    let is_outline = |edge: &Edge| sources[edge.source.0 as usize].slot == Slot::Outside;
+    if (is_crack && growth == Growth::Hardly) || (is_outline(one) && is_outline(two)) {
+        return None;
+    }
+    let edge = |k: usize, is_back: bool| {
+        if is_back {
+            let edge = &contour[(corner + count - k) % count];
+            (edge.b, edge.a)
+        } else {
+            let edge = &contour[(next + k) % count];
+            (edge.a, edge.b)
+        }
+    };
+    let most = MOST_EDGES.min((count - 1) / 2);
+    // As far along one side as along the other, from corner to corner of both.
+    let (mut k, mut begun) = ([0, 0], [0.0, 0.0]);
+    let mut reached = 0.0;
+    let mut places = [one.b; 2].map(|p| (p.x as f64, p.y as f64));
+    loop {
+        let sides = [edge(k[0], true), edge(k[1], false)];
+        let lengths = sides.map(|(a, b)| length(a, b));
+        let to = (begun[0] + lengths[0]).min(begun[1] + lengths[1]);
+        let at = |s: usize, arc: f64| {
+            let (a, b) = sides[s];
+            let (part, along) = ((arc - begun[s]) / lengths[s], way(a, b));
+            (a.x as f64 + part * along.0, a.y as f64 + part * along.1)
+        };
+        let ahead = [at(0, to), at(1, to)];
+        let width = |p: [(f64, f64); 2]| (p[1].0 - p[0].0, p[1].1 - p[0].1);
+        let (from, end) = (width(places), width(ahead));
+        if end.0.hypot(end.1) >= least {
+            let part = part_with_length(from, end, least);
+            let arc = reached + part * (to - reached);
+            let ends = [at(0, arc), at(1, arc)].map(|(x, y)| Point2::new(x, y));
+            let (before, after) = ((corner + count - k[0]) % count, (next + k[1]) % count);
+            let ends = [inwards(&contour[before], ends[0]), inwards(&contour[after], ends[1])];
+            return (ends[0] != ends[1]).then_some(Needle { before, after, ends });
+        }
+        for s in 0..2 {
+            if begun[s] + lengths[s] <= to {
+                begun[s] += lengths[s];
+                k[s] += 1;
+            }
+        }
+        if k[0] + k[1] >= 2 * most {
+            return None;
+        }
+        (reached, places) = (to, ahead);
+    }
+}
+
+impl Needle {
+    /// Takes the needle off a contour.
+    fn cut(&self, contour: &mut Contour, sources: &mut Vec<SourceEdge>) {
+        let (first, last) = (contour[self.before], contour[self.after]);
+        let [p, q] = self.ends;
+        let of = |edge: &Edge| sources[edge.source.0 as usize];
+        let slot = if of(&first).slot == Slot::Inside { Slot::Inside } else { of(&last).slot };
+        let across = SourceEdge { a: p, b: q, carried: [of(&first).at(p), of(&last).at(q)], slot };
+        let source = SourceIndex(sources.len() as u32);
+        sources.push(across);
+        let mut kept = Vec::with_capacity(contour.len() + 1);
+        kept.extend([Edge { b: p, ..first }, Edge { a: p, b: q, source }, Edge { a: q, ..last }]);
+        let mut i = (self.after + 1) % contour.len();
+        while i != self.before {
+            kept.push(contour[i]);
+            i = (i + 1) % contour.len();
+        }
+        kept.retain(|edge| edge.a != edge.b);
+        if kept.len() > 2 {
+            *contour = kept;
+        }
+    }
+}
+
+fn way(a: GridPoint, b: GridPoint) -> (f64, f64) {
+    ((b.x - a.x) as f64, (b.y - a.y) as f64)
+}
+
+fn length(a: GridPoint, b: GridPoint) -> f64 {
+    let (x, y) = way(a, b);
+    x.hypot(y)
+}
+
+/// The part of the way from `from`, a vector shorter than `length`, to `to`, one that is not, where they are as long.
+fn part_with_length(from: (f64, f64), to: (f64, f64), length: f64) -> f64 {
+    let change = (to.0 - from.0, to.1 - from.1);
+    // |from + part change|² = length².
+    let a = change.0 * change.0 + change.1 * change.1;
+    let b = from.0 * change.0 + from.1 * change.1;
+    let c = from.0 * from.0 + from.1 * from.1 - length * length;
+    ((-b + (b * b - a * c).max(0.0).sqrt()) / a).clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::boolean::{material, twice_area};
+    use crate::source::Carried;
+    use fissure_scene::{Point, Vector};
+    use proptest::prelude::*;
+
+    fn shapes(ring: &[(f64, f64)], slot: Slot) -> (Vec<Shape>, Vec<SourceEdge>) {
+        let point = |&(x, y): &(f64, f64)| GridPoint::new(x.round() as i64, y.round() as i64);
+        let carried = |(x, y): (f64, f64)| Carried { rest: Point::new(x, y), velocity: Vector::zeros(), arc: 0.0 };
+        let edges = ring.iter().zip(ring.iter().cycle().skip(1));
+        let source = |(p, q)| SourceEdge { a: point(p), b: point(q), carried: [carried(*p), carried(*q)], slot };
+        let sources: Vec<SourceEdge> = edges.map(source).collect();
+        (material(&sources), sources)
+    }
+
+    fn area(shapes: &[Shape]) -> f64 {
+        0.5 * shapes.iter().flatten().map(|contour| twice_area(contour)).sum::<i128>() as f64
+    }
+
+    proptest! {
+        /// Truth: closed form. An isosceles needle on a block, or in it, with corners anywhere along its sides, ends
+        /// where it is `least` wide: t = least/(2 sin(angle/2)) from its point, t² sin(angle)/2 of its area are gone.
+        #[test]
+        fn needles_end_where_they_are_wide_enough(
+            degrees in 2.0..55.0_f64, heading in -3.0..3.0_f64, is_crack: bool,
+            stops in proptest::collection::vec(0.05..0.99_f64, 0..6),
+        ) {
+            let (length, least, half) = (1e8, 2e5, 0.5 * degrees.to_radians());
+            // The point lies at the origin, the needle to the left of it, or the crack to the right.
+            let side = |sign: f64, part: f64| (-length * part * half.cos(), sign * length * part * half.sin());
+            let mut ring = vec![(0.0, 0.0)];
+            let mut parts = stops;
+            parts.sort_by(f64::total_cmp);
+            parts.push(1.0);
+            let (depth, height) = (2.0 * length, 2.0 * length);
+            let x = side(1.0, 1.0).0;
+            if is_crack {
+                ring.extend(parts.iter().map(|&part| side(1.0, part)));
+                ring.extend([(x, height), (depth, height), (depth, -height), (x, -height)]);
+                ring.extend(parts.iter().rev().map(|&part| side(-1.0, part)));
+                ring.reverse();
+            } else {
+                ring.extend(parts.iter().map(|&part| side(1.0, part)));
+                ring.extend([(x, height), (-depth, height), (-depth, -height), (x, -height)]);
+                ring.extend(parts.iter().rev().map(|&part| side(-1.0, part)));
+            }
+            let (sin, cos) = heading.sin_cos();
+            ring.iter_mut().for_each(|p| *p = (cos * p.0 - sin * p.1, sin * p.0 + cos * p.1));
+            let (whole, mut sources) = shapes(&ring, Slot::Inside);
+            let mut blunt = whole.clone();
+            blunt_needles(&mut blunt, least, Growth::Allowed, &mut sources);
+            let way = least / (2.0 * half.sin());
+            let expected = 0.5 * way * way * (2.0 * half).sin() * if is_crack { 1.0 } else { -1.0 };
+            let found = area(&blunt) - area(&whole);
+            // Where the sides end is rounded to the grid, by a step and a half of it at most.
+            prop_assert!((found - expected).abs() < 1.5 * (length + least), "{} for {}", found, expected);
+            for contour in blunt.iter().flatten() {
+                for (edge, next) in contour.iter().zip(contour.iter().cycle().skip(1)) {
+                    prop_assert_eq!(edge.b, next.a);
+                    let carried = sources[edge.source.0 as usize].at(edge.a).rest;
+                    let off = (carried.x - edge.a.x as f64).hypot(carried.y - edge.a.y as f64);
+                    prop_assert!(off < 4.0, "{}", off);
+                }
+            }
+            // Drawn corners stay, and cracks where neighbours may be near.
+            for (slot, growth) in [(Slot::Outside, Growth::Allowed), (Slot::Inside, Growth::Hardly)] {
+                let (whole, mut sources) = shapes(&ring, slot);
+                let mut kept = whole.clone();
+                blunt_needles(&mut kept, least, growth, &mut sources);
+                prop_assert!(kept == whole || (slot == Slot::Inside && !is_crack));
+            }
+        }
+    }
+}
