@@ -1,4 +1,5 @@
-//! What benchmarks time by itself. Not for use: no promise holds here.
+//! The solver without the run around it, for benchmarks and for steps longer than a run allows. Not for use: no promise
+//! holds here.
 
 use crate::SimulationError;
 use crate::crack::cracks::{Cracks, TipId};
@@ -30,6 +31,20 @@ impl Bare {
         let solver = formulation::build(scene.solver.formulation, scene, particles.clone(), &cracks)?;
         let time_step = 0.5 * solver.stable_time_step();
         Ok(Self { solver, cracks, time: 0.0, time_step, particles: particles.len() })
+    }
+
+    /// As [`Bare::new`], with steps of any part of the predicted limit, be it beyond it.
+    ///
+    /// # Errors
+    /// As [`Bare::new`].
+    pub fn with_step(scene: &Scene, part_of_limit: f64) -> Result<Self, SimulationError> {
+        let bare = Self::new(scene)?;
+        Ok(Self { time_step: part_of_limit * bare.solver.stable_time_step(), ..bare })
+    }
+
+    /// Kinetic energy [J/m].
+    pub fn kinetic_energy(&self) -> f64 {
+        self.solver.kinetic_energy()
     }
 
     /// Number of particles.

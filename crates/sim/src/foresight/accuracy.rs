@@ -36,9 +36,10 @@ const TOTAL: [(f64, f64); 7] =
     [(1.0, 0.2), (2.0, 0.15), (3.0, 0.045), (4.0, 0.033), (6.0, 0.02), (8.0, 0.017), (16.0, 0.01)];
 /// The same of the updated formulation, at fewer places.
 const UPDATED: [(f64, f64); 4] = [(1.0, 0.4), (3.0, 0.1), (4.0, 0.1), (6.0, 0.04)];
-/// (Cells between a tip and what is nearest to it, error of K), in the same plates.
+/// (Cells between a tip and what is nearest to it, error of K), in the same plates; at four and five cells it is that
+/// of two tips that face each other.
 const ROOM: [(f64, f64); 8] =
-    [(1.0, 0.7), (2.0, 0.35), (3.0, 0.11), (4.0, 0.055), (5.0, 0.04), (7.0, 0.017), (10.0, 0.0125), (16.0, 0.01)];
+    [(1.0, 0.7), (2.0, 0.35), (3.0, 0.11), (4.0, 0.075), (5.0, 0.075), (7.0, 0.02), (10.0, 0.0125), (16.0, 0.01)];
 /// What loads that come at once add, times the square of the number of cells of the crack: waves that are shorter than
 /// the crack ring on the grid.
 const AT_ONCE: f64 = 0.5;

@@ -10,6 +10,8 @@
 //! the crack.
 
 use crate::case::{Case, Options};
+use crate::placed::Placed;
+use crate::placement::Placement;
 use crate::problem::{Problem, linear_material, rectangle};
 use crate::report::Tally;
 use fissure_scene::{BoxSide, Curve, LoadKind, PlaneState, Selection, Vector};
@@ -84,6 +86,19 @@ fn problem(degrees: f64, cells: f64, faces: Faces) -> Problem {
         }
     }
     problem
+}
+
+/// K_II of a crack along the grid with so many cells along half of it that is pressed together, by what it is without
+/// pressure and contact: as computed, and as it should be. For the first of its tips.
+pub(crate) fn mode_2_of_pressed(cells: f64, friction: f64) -> Result<(f64, f64), SimulationError> {
+    let mode_2 = |faces| {
+        let mut placed = Placed::new(&problem(0.0, cells, faces).scene, Placement::NATURAL)?;
+        while !placed.is_finished() {
+            placed.advance()?;
+        }
+        Ok::<f64, SimulationError>(placed.now().tips()[0].mode_2)
+    };
+    Ok((mode_2(Faces::Pressed(friction))? / mode_2(Faces::Apart)?, 1.0 - friction * PRESSURE / SHEAR))
 }
 
 fn elastic() -> Elastic {

@@ -4,8 +4,11 @@
 //! of what works.
 
 mod impacts;
+mod neighbours;
 mod plates;
+mod step_limits;
 mod time_steps;
+mod transfers;
 
 use fissure_sim::SimulationError;
 
@@ -37,15 +40,21 @@ pub struct StabilityMap {
 }
 
 /// All maps.
-pub const STABILITY_MAPS: [StabilityMap; 9] = [
+pub const STABILITY_MAPS: [StabilityMap; 15] = [
     plates::CRACK_LENGTH,
     plates::LIGAMENT,
     plates::TURN,
     plates::POISSON_RATIO,
     plates::PARTICLES_PER_CELL,
     plates::LENGTHS,
+    neighbours::NEAR_THINGS,
+    neighbours::PRESSED,
     time_steps::TOTAL,
     time_steps::UPDATED,
+    step_limits::REAL_LIMIT,
+    step_limits::MANY_STEPS,
+    transfers::RINGING,
+    transfers::STRETCHED,
     impacts::IMPACTS,
 ];
 
@@ -99,6 +108,14 @@ mod tests {
             ("time-step-total", 0.99, 2.0, 0.0, 0.015),
             ("time-step-updated", 0.99, 2.0, 0.0, 0.04),
             ("impacts", 0.3, 2.0, 0.0, 0.06),
+            ("near-things", 3.0, 0.0, 0.0, 0.01),
+            ("near-things", 1.0, 0.0, 0.1, 0.5),
+            ("pressed", 0.3, 3.0, 0.0, 0.02),
+            ("real-limit", 2.0, 1.0, 0.0, 0.05),
+            ("ringing", 2.0, 2.0, 0.0, 0.06),
+            ("ringing", 3.0, 2.0, 0.06, 0.3),
+            ("stretched", 1.25, 2.0, 0.0, 0.05),
+            ("many-steps", 1e4, 0.0, 0.0, 1e-3),
         ] {
             let found = map(name).value(across, up).unwrap_or(f64::NAN);
             assert!((low..=high).contains(&found), "{name} at {across}, {up}: {found}");
