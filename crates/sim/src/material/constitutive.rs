@@ -9,7 +9,7 @@ use fissure_scene::{Matrix, Plasticity};
 ///
 /// In the plane R = [[a, -b], [b, a]]/r with a = F11+F22, b = F21-F12, r = √(a²+b²). R is not defined when r = 0 (an
 /// inversion with equal singular values); it is then taken as the identity.
-#[inline]
+#[inline(always)]
 fn deformation_beyond_rotation(h: &Matrix) -> Matrix {
     let a = 2.0 + h.m11 + h.m22;
     let b = h.m21 - h.m12;
@@ -25,7 +25,7 @@ fn deformation_beyond_rotation(h: &Matrix) -> Matrix {
 }
 
 /// J - 1 = tr H + det H [–], the relative change of volume.
-#[inline]
+#[inline(always)]
 pub fn volume_change(h: &Matrix) -> f64 {
     h.m11 + h.m22 + (h.m11 * h.m22 - h.m12 * h.m21)
 }
@@ -58,7 +58,7 @@ pub fn first_piola_stress(h: &Matrix, mu: f64, lambda: f64) -> Matrix {
 }
 
 /// Kirchhoff stress τ = P Fᵀ = 2μ(F - R)Fᵀ + λ(J-1) J I [Pa], symmetric.
-#[inline]
+#[inline(always)]
 pub fn kirchhoff_stress(h: &Matrix, mu: f64, lambda: f64) -> Matrix {
     let e = deformation_beyond_rotation(h);
     let jacobian_minus_one = volume_change(h);

@@ -11,7 +11,8 @@ use super::setup::Setup;
 use crate::grid::walker::Walker;
 use crate::grid::{kernel, pieces};
 use crate::threads::prelude::*;
-use fissure_scene::{Matrix, Vector};
+use crate::wide::{Loop, run_widest};
+use fissure_scene::Vector;
 
 /// What goes to the grid.
 #[derive(Debug, Clone, Copy)]
@@ -39,77 +40,173 @@ struct MomentumPiece<'a> {
     momentum: [&'a mut [f64]; 2],
 }
 
-/// The first `W` of all weights.
+/// The first `L` of all weights; those from the width of the kernel on are 0.
 #[inline(always)]
-pub(super) fn first<const W: usize>(all: &[f64; kernel::MAX_WIDTH]) -> [f64; W] {
+pub(super) fn first<const L: usize>(all: &[f64; kernel::MAX_WIDTH]) -> [f64; L] {
     std::array::from_fn(|a| all[a])
 }
 
-/// From a particle at `place` to each of the nodes of its stencil along one axis [m].
-#[inline]
-pub(super) fn arms<const W: usize>(first: i32, origin: f64, cell_size: f64, place: f64) -> [f64; W] {
+/// From a particle at `place` to each of the nodes of its stencil along one axis, and to those beyond [m].
+#[inline(always)]
+pub(super) fn arms<const L: usize>(first: i32, origin: f64, cell_size: f64, place: f64) -> [f64; L] {
     std::array::from_fn(|a| (origin - place) + f64::from(first + a as i32) * cell_size)
 }
 
-/// Adds `value` of 0 to W − 1 to the places from `at` on. Fixed sizes keep the loop free of checks.
+/// Adds `added` to the numbers from `at` on. What is beyond the stencil is 0, and may be beyond the last node.
 #[inline(always)]
-fn add<const W: usize>(values: &mut [f64], at: usize, value: impl Fn(usize) -> f64) {
-    if let Some(values) = values[at..].first_chunk_mut::<W>() {
-        for a in 0..W {
-            values[a] += value(a);
+fn add<const L: usize>(values: &mut [f64], at: usize, added: [f64; L]) {
+    let values = &mut values[at..];
+    match values.first_chunk_mut::<L>() {
+        Some(values) => {
+            for a in 0..L {
+                values[a] += added[a];
+            }
         }
+        None => values.iter_mut().zip(added).for_each(|(value, added)| *value += added),
     }
 }
 
-/// The particles of one band that no crack divides. As arguments of their own the parts are known not to overlap the
-/// piece, so that what is read from them need not be read again after each addition.
-fn band_to_grid<const W: usize, const AFFINE: bool>(
+/// Particles whose share is worked out before any of it goes to the grid. Between the two it lies in memory, where
+/// neighbouring numbers are read at once.
+const BATCH: usize = 32;
+
+/// What a particle sends to the rows of its stencil.
+#[derive(Clone, Copy)]
+struct Share<const L: usize> {
+    /// First node of each row.
+    rows: [usize; kernel::MAX_WIDTH],
+    /// Weights [–] and their derivatives [1/m] along x.
+    x: [f64; L],
+    dx: [f64; L],
+    /// Mass times the weight of each row [kg/m].
+    mass: [f64; kernel::MAX_WIDTH],
+    /// Weight and derivative of each row, along y.
+    y: [f64; kernel::MAX_WIDTH],
+    dy: [f64; kernel::MAX_WIDTH],
+    /// Velocity over the columns, and what is added to it in each row [m/s]; x and y apart.
+    velocity: [[f64; L]; 2],
+    turn: [[f64; kernel::MAX_WIDTH]; 2],
+    /// V_p0 τ_p [N].
+    tension: [[f64; 2]; 2],
+}
+
+impl<const L: usize> Share<L> {
+    const NONE: Self = Self {
+        rows: [0; kernel::MAX_WIDTH],
+        x: [0.0; L],
+        dx: [0.0; L],
+        mass: [0.0; kernel::MAX_WIDTH],
+        y: [0.0; kernel::MAX_WIDTH],
+        dy: [0.0; kernel::MAX_WIDTH],
+        velocity: [[0.0; L]; 2],
+        turn: [[0.0; kernel::MAX_WIDTH]; 2],
+        tension: [[0.0; 2]; 2],
+    };
+}
+
+/// The particles of one band that no crack divides, for a kernel of `W` nodes along an axis, `L` numbers side by side.
+struct Band<'a, 'p, const W: usize, const L: usize, const AFFINE: bool> {
+    to: ToGrid<'a>,
+    piece: &'a mut Piece<'p>,
+}
+
+impl<const W: usize, const L: usize, const AFFINE: bool> Loop for Band<'_, '_, W, L, AFFINE> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let ToGrid { setup, points, lattice } = self.to;
+        band_to_grid::<W, L, AFFINE>(setup, points, lattice, self.piece);
+    }
+}
+
+/// Runs a [`Band`]. As arguments of their own the parts are known not to overlap the piece, so that what is read from
+/// them need not be read again after each addition.
+#[inline(always)]
+fn band_to_grid<const W: usize, const L: usize, const AFFINE: bool>(
     setup: &Setup,
     points: &Points,
     lattice: &Lattice,
     piece: &mut Piece<'_>,
 ) {
-    let grid = &lattice.grid;
-    let h = grid.cell_size;
-    let mut walker = Walker::new(grid);
-    for &p in lattice.particles_of_band(piece.band) {
-        let p = p as usize;
-        if lattice.stencils.of(p).is_some() {
-            continue;
-        }
-        let point = &points.point[p];
-        let stencil = lattice.stencil(point.position);
-        // The grid has been laid for all stencils.
-        let Some(rows) = walker.rows(stencil.first, W) else { continue };
-        let m = setup.particles.mass[p];
-        let tension = points.stress_times_volume(setup, p, point);
-        let x: [f64; W] = first(&stencil.weight[0]);
-        let dx: [f64; W] = first(&stencil.gradient[0]);
-        let mut arm_x = [0.0; W];
-        let mut affine = Matrix::zeros();
-        if AFFINE {
-            arm_x = arms(stencil.first[0], grid.origin.x, h, point.position.x);
-            affine = points.affine[p];
-        }
-        let arm_y: [f64; W] = arms(stencil.first[1], grid.origin.y, h, point.position.y);
-        for b in 0..W {
-            let at = rows[b] - piece.start;
-            let (wy, gy) = (stencil.weight[1][b], stencil.gradient[1][b]);
-            let mw = m * wy;
-            add::<W>(piece.mass, at, |a| mw * x[a]);
-            for axis in 0..2 {
-                let v = point.velocity[axis];
-                if AFFINE {
-                    let v = v + affine[(axis, 1)] * arm_y[b];
-                    add::<W>(piece.momentum[axis], at, |a| mw * x[a] * (v + affine[(axis, 0)] * arm_x[a]));
-                } else {
-                    let mv = mw * v;
-                    add::<W>(piece.momentum[axis], at, |a| mv * x[a]);
-                }
-                // f_i −= V_p0 τ_p ∇w_ip.
-                let (t1, t2) = (tension[(axis, 0)] * wy, tension[(axis, 1)] * gy);
-                add::<W>(piece.force[axis], at, |a: usize| -(t1 * dx[a] + t2 * x[a]));
+    let mut walker = Walker::new(&lattice.grid);
+    let mut shares = [Share::<L>::NONE; BATCH];
+    for particles in lattice.particles_of_band(piece.band).chunks(BATCH) {
+        let mut count = 0;
+        for &p in particles {
+            let p = p as usize;
+            if lattice.stencils.of(p).is_none()
+                && let Some(share) = share::<W, L, AFFINE>(setup, points, lattice, &mut walker, p)
+            {
+                shares[count] = share;
+                count += 1;
             }
+        }
+        for share in &shares[..count] {
+            send_share::<W, L>(share, piece);
+        }
+    }
+}
+
+/// What an undivided particle sends; none where its nodes do not exist, which the grid has been laid for.
+#[inline(always)]
+fn share<const W: usize, const L: usize, const AFFINE: bool>(
+    setup: &Setup,
+    points: &Points,
+    lattice: &Lattice,
+    walker: &mut Walker<'_>,
+    p: usize,
+) -> Option<Share<L>> {
+    let (point, grid) = (&points.point[p], &lattice.grid);
+    let stencil = lattice.stencil(point.position);
+    let rows = walker.rows(stencil.first, W)?;
+    let m = setup.particles.mass[p];
+    let tension = points.stress_times_volume(setup, p, point);
+    let mut share = Share {
+        rows,
+        x: first(&stencil.weight[0]),
+        dx: first(&stencil.gradient[0]),
+        mass: stencil.weight[1].map(|weight| m * weight),
+        y: stencil.weight[1],
+        dy: stencil.gradient[1],
+        velocity: [[point.velocity.x; L], [point.velocity.y; L]],
+        turn: [[0.0; kernel::MAX_WIDTH]; 2],
+        tension: [[tension.m11, tension.m12], [tension.m21, tension.m22]],
+    };
+    if AFFINE {
+        let arms_x: [f64; L] = arms(stencil.first[0], grid.origin.x, grid.cell_size, point.position.x);
+        let arms_y: [f64; kernel::MAX_WIDTH] = arms(stencil.first[1], grid.origin.y, grid.cell_size, point.position.y);
+        for axis in 0..2 {
+            let affine = &points.affine[p];
+            share.velocity[axis] = arms_x.map(|arm| point.velocity[axis] + affine[(axis, 0)] * arm);
+            share.turn[axis] = arms_y.map(|arm| affine[(axis, 1)] * arm);
+        }
+    }
+    Some(share)
+}
+
+/// Sends the share of a particle to the nodes of a piece.
+#[inline(always)]
+fn send_share<const W: usize, const L: usize>(share: &Share<L>, piece: &mut Piece<'_>) {
+    let Share { x, dx, .. } = share;
+    for b in 0..W {
+        let at = share.rows[b] - piece.start;
+        let mut mass = [0.0; L];
+        for a in 0..L {
+            mass[a] = share.mass[b] * x[a];
+        }
+        add(piece.mass, at, mass);
+        for axis in 0..2 {
+            let (velocity, turn) = (&share.velocity[axis], share.turn[axis][b]);
+            // f_i −= V_p0 τ_p ∇w_ip.
+            let (t1, t2) = (-share.tension[axis][0] * share.y[b], -share.tension[axis][1] * share.dy[b]);
+            let (mut momentum, mut force) = ([0.0; L], [0.0; L]);
+            for a in 0..L {
+                momentum[a] = mass[a] * (velocity[a] + turn);
+                force[a] = t1 * dx[a] + t2 * x[a];
+            }
+            add(piece.momentum[axis], at, momentum);
+            add(piece.force[axis], at, force);
         }
     }
 }
@@ -119,14 +216,14 @@ impl ToGrid<'_> {
     /// `nodes` hold these sums.
     pub(super) fn send(&self, nodes: &mut Nodes) {
         match kernel::width(self.lattice.kernel) {
-            2 => self.all_bands::<2>(nodes),
-            3 => self.all_bands::<3>(nodes),
-            _ => self.all_bands::<4>(nodes),
+            2 => self.all_bands::<2, 2>(nodes),
+            3 => self.all_bands::<3, 4>(nodes),
+            _ => self.all_bands::<4, 4>(nodes),
         }
         self.divided_to_grid(nodes);
     }
 
-    fn all_bands<const W: usize>(&self, nodes: &mut Nodes) {
+    fn all_bands<const W: usize, const L: usize>(&self, nodes: &mut Nodes) {
         for parity in 0..2 {
             let bands = self.lattice.bands(parity);
             let ranges = || bands.clone().map(|(_, nodes)| nodes);
@@ -146,10 +243,10 @@ impl ToGrid<'_> {
                     force: [fx, fy],
                 })
                 .collect();
-            let Self { setup, points, lattice } = *self;
-            let run = |piece: &mut Piece<'_>| match points.affine.is_empty() {
-                true => band_to_grid::<W, false>(setup, points, lattice, piece),
-                false => band_to_grid::<W, true>(setup, points, lattice, piece),
+            let to = *self;
+            let run = |piece: &mut Piece<'_>| match self.points.affine.is_empty() {
+                true => run_widest(Band::<W, L, false> { to, piece }),
+                false => run_widest(Band::<W, L, true> { to, piece }),
             };
             if self.setup.is_parallel() {
                 all.par_iter_mut().for_each(run);
@@ -233,6 +330,62 @@ impl ToGrid<'_> {
                     py[at + a] += mw * v.y;
                 }
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wide::run_in_all;
+    use fissure_plane::Point;
+    use fissure_scene::Kernel;
+
+    /// The bands of a grid, one after the other, into one list each of mass, momentum and force.
+    struct AllBands<'a>(ToGrid<'a>);
+
+    impl Loop for AllBands<'_> {
+        type Output = Vec<f64>;
+
+        #[inline(always)]
+        fn run(self) -> Vec<f64> {
+            let ToGrid { setup, points, lattice } = self.0;
+            let mut sums = [(); 5].map(|()| vec![0.0; lattice.grid.len()]);
+            let [mass, px, py, fx, fy] = sums.each_mut().map(Vec::as_mut_slice);
+            let mut piece = Piece { band: 0, start: 0, mass, momentum: [px, py], force: [fx, fy] };
+            for band in 0..lattice.grid.bands() {
+                piece.band = band;
+                match lattice.kernel {
+                    Kernel::Bilinear => band_to_grid::<2, 2, true>(setup, points, lattice, &mut piece),
+                    Kernel::Gimp | Kernel::Quadratic => {
+                        band_to_grid::<3, 4, true>(setup, points, lattice, &mut piece);
+                    }
+                    Kernel::Cubic => band_to_grid::<4, 4, true>(setup, points, lattice, &mut piece),
+                }
+            }
+            sums.concat()
+        }
+    }
+
+    /// Truth: the instructions that every machine has, and of the mass the sum over all weights.
+    #[test]
+    fn all_instructions_send_the_same_bits() {
+        for kernel in [Kernel::Bilinear, Kernel::Gimp, Kernel::Quadratic, Kernel::Cubic] {
+            let (setup, points, lattice) = super::super::tests::shaken(kernel);
+            let to = ToGrid { setup: &setup, points: &points, lattice: &lattice };
+            let found = run_in_all(|| AllBands(to));
+            let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+            for (name, sums) in &found[1..] {
+                assert!(bits(sums) == bits(&found[0].1), "{name}, {kernel:?}");
+            }
+            let mut mass = vec![0.0; lattice.grid.len()];
+            for (p, point) in points.point.iter().enumerate() {
+                let place: Point = point.position;
+                lattice.for_each_entry(p, place, |node, weight| mass[node] += setup.particles.mass[p] * weight);
+            }
+            let most = mass.iter().fold(0.0, |a: f64, m| a.max(*m));
+            let off = mass.iter().zip(&found[0].1).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-14 * most, "{kernel:?}: {off} of {most}");
         }
     }
 }

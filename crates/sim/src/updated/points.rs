@@ -84,7 +84,7 @@ impl Points {
     }
 
     /// Elastic constants (μ, λ) of a particle, hardening included [Pa].
-    #[inline]
+    #[inline(always)]
     pub(super) fn moduli(&self, setup: &Setup, particle: usize) -> (f64, f64) {
         let elastic = setup.elastic_of(particle);
         match self.plastic.get(particle) {
@@ -94,7 +94,7 @@ impl Points {
     }
 
     /// V_p0 τ_p [N], which equals V_p σ_p, of a particle, which is at `point`.
-    #[inline]
+    #[inline(always)]
     pub(super) fn stress_times_volume(&self, setup: &Setup, particle: usize, point: &MaterialPoint) -> Matrix {
         let (mu, lambda) = self.moduli(setup, particle);
         crate::kirchhoff_stress(&point.elastic_gradient, mu, lambda) * setup.particles.volume[particle]

@@ -44,6 +44,28 @@ impl Run {
     }
 }
 
+/// A body without cracks whose particles are off their lattice, move at random and are strained, on the grid of its
+/// next step.
+pub(super) fn shaken(kernel: Kernel) -> (Setup, Points, Lattice) {
+    let mut scene = free_body(rectangle([0.0, 0.0], [2.0, 1.0]), 0.05);
+    (scene.solver.kernel, scene.solver.transfer) = (kernel, Transfer::Apic);
+    let mut run = Run::new(&scene);
+    let mut count = 0.0;
+    let mut next = || {
+        count += 1.0;
+        (12.9898_f64 * count).sin()
+    };
+    for (point, affine) in run.solver.points.point.iter_mut().zip(&mut run.solver.points.affine) {
+        point.position += 0.02 * Vector::new(next(), next());
+        point.velocity = Vector::new(next(), next());
+        point.elastic_gradient = 0.1 * Matrix::new(next(), next(), next(), next());
+        *affine = Matrix::new(next(), next(), next(), next());
+    }
+    run.solver.lay_grid(&run.cracks, 0.0).unwrap();
+    let Updated { setup, points, lattice, .. } = run.solver;
+    (setup, points, lattice)
+}
+
 /// A plate of 1.6 m × 1 m with a kinked crack from its left edge, all of it beside grid lines.
 fn cracked_plate(spacing: f64) -> Scene {
     let mut scene = free_body(rectangle([0.0, 0.0], [1.6, 1.0]), spacing);
