@@ -23,16 +23,19 @@ const MOST_EDGES: usize = 64;
 /// Ends sharp corners bluntly where their sides are `least` grid steps apart. `sources` receives the edges across.
 /// Corners of outlines stay, and those of cracks where polygons may hardly grow.
 pub(crate) fn blunt_needles(shapes: &mut [Shape], least: f64, growth: Growth, sources: &mut Vec<SourceEdge>) {
-    for contour in shapes.iter_mut().flatten() {
-        let mut i = 0;
-        while i < contour.len() {
-            match needle(contour, i, least, growth, sources) {
-                // What comes after may be sharp again.
-                Some(needle) => {
-                    needle.cut(contour, sources);
-                    i = 0;
+    for shape in 0..shapes.len() {
+        for contour in 0..shapes[shape].len() {
+            let mut i = 0;
+            while i < shapes[shape][contour].len() {
+                let edges = &shapes[shape][contour];
+                match needle(edges, i, least, growth, sources).filter(|needle| needle.is_empty(edges, shapes)) {
+                    // What comes before may be sharp now.
+                    Some(needle) => {
+                        needle.cut(&mut shapes[shape][contour], sources);
+                        i = 0;
+                    }
+                    None => i += 1,
                 }
-                None => i += 1,
             }
         }
     }
@@ -111,6 +114,29 @@ fn needle(contour: &Contour, corner: usize, least: f64, growth: Growth, sources:
 }
 
 impl Needle {
+    /// Whether no corner of `shapes` lies in the needle of `contour`, one of theirs.
+    fn is_empty(&self, contour: &Contour, shapes: &[Shape]) -> bool {
+        let count = contour.len();
+        let corners = (self.after + count - self.before) % count;
+        let mut around = vec![self.ends[0]];
+        around.extend((0..corners).map(|k| contour[(self.before + k) % count].b));
+        around.push(self.ends[1]);
+        let low = around.iter().fold((i64::MAX, i64::MAX), |low, p| (low.0.min(p.x), low.1.min(p.y)));
+        let high = around.iter().fold((i64::MIN, i64::MIN), |high, p| (high.0.max(p.x), high.1.max(p.y)));
+        let is_in = |p: GridPoint| {
+            let sides = around.iter().zip(around.iter().cycle().skip(1));
+            let crossed = sides.filter(|(a, b)| {
+                let (along, to) = (way(**a, **b), way(**a, p));
+                let left = along.0 * to.1 - along.1 * to.0;
+                ((a.y > p.y) != (b.y > p.y)) && ((left > 0.0) == (b.y > a.y))
+            });
+            crossed.count() % 2 == 1
+        };
+        let is_near = |p: &GridPoint| (low.0..=high.0).contains(&p.x) && (low.1..=high.1).contains(&p.y);
+        let near = shapes.iter().flatten().flatten().map(|edge| edge.a).filter(is_near);
+        !near.into_iter().any(|p| !around.contains(&p) && is_in(p))
+    }
+
     /// Takes the needle off a contour.
     fn cut(&self, contour: &mut Contour, sources: &mut Vec<SourceEdge>) {
         let (first, last) = (contour[self.before], contour[self.after]);
@@ -219,6 +245,15 @@ mod tests {
                     prop_assert!(off < 4.0, "{}", off);
                 }
             }
+            // What holds something stays: a speck in the middle of the needle.
+            let speck: Vec<(f64, f64)> = [(0.0, 0.0), (9.0, 0.0), (0.0, 9.0)]
+                .map(|(x, y)| (x - 0.5 * way * cos, y - 0.5 * way * sin))
+                .to_vec();
+            let mut held = whole.clone();
+            held.extend(shapes(&speck, Slot::Inside).0);
+            let before = held.clone();
+            blunt_needles(&mut held, least, Growth::Allowed, &mut sources.clone());
+            prop_assert!(held == before);
             // Drawn corners stay, and cracks where neighbours may be near.
             for (slot, growth) in [(Slot::Outside, Growth::Allowed), (Slot::Inside, Growth::Hardly)] {
                 let (whole, mut sources) = shapes(&ring, slot);
