@@ -1,5 +1,6 @@
 //! The bodies as solids, with or without their cracks.
 
+use crate::body_names::body_names;
 use crate::boolean::{Edge, Shape, material, twice_area};
 use crate::closed::shifts as closed;
 use crate::edges::MovedLines;
@@ -147,13 +148,14 @@ struct Solids<'a> {
     options: &'a PostOptions,
     grids: &'a [Grid],
     interiors: Vec<Interior<'a>>,
+    names: Vec<String>,
 }
 
 impl<'a> Solids<'a> {
     fn new(scene: &'a Scene, frame: &'a Frame, options: &'a PostOptions, grids: &'a [Grid]) -> Self {
         let interior = |body| Interior::new(frame, body, scene.particle_spacing, options.cut);
         let interiors = (0..scene.bodies.len() as u32).map(interior).collect();
-        Self { scene, frame, options, grids, interiors }
+        Self { scene, frame, options, grids, interiors, names: body_names(scene) }
     }
 
     /// What the boundary of fragment `piece` encloses as it is now; nothing where that is no more than rounding.
@@ -251,7 +253,7 @@ impl<'a> Solids<'a> {
     /// The solid of some polygons, with what their corners within carry; none of none.
     fn mesh(&self, body: u32, piece: u32, extrusion: &Extrusion<'_>, caps: Vec<(Cap, Vec<Carried>)>) -> Option<Mesh> {
         let area = caps.iter().map(|(cap, _)| area(&cap.shape, extrusion.grid)).sum();
-        let name = object_name(&self.scene.bodies[body as usize].name, "piece", piece);
+        let name = object_name(&self.names[body as usize], "piece", piece);
         let mut mesh = Mesh::new(name, piece, Content::Solid { area, thickness: self.options.thickness });
         caps.iter().for_each(|(cap, within)| extrusion.solid(cap, within, &mut mesh));
         (!caps.is_empty()).then_some(mesh)

@@ -1,5 +1,6 @@
 //! The crack faces as surfaces.
 
+use crate::body_names::body_names;
 use crate::boolean::{Edge, SourceIndex};
 use crate::extrude::Extrusion;
 use crate::mesh::{Content, Mesh, object_name};
@@ -35,7 +36,7 @@ fn face_mesh(scene: &Scene, crack: &CrackFrame, options: &PostOptions) -> Mesh {
         texture_origin: low,
         texture_size: (high - low).amax(),
     };
-    let name = object_name(&body.name, "crack", crack.crack);
+    let name = object_name(&body_names(scene)[crack.body as usize], "crack", crack.crack);
     let mut mesh = Mesh::new(name, crack.crack, Content::Surface);
     // Without the two closing edges, which lie in the opening and not on a face.
     let count = crack.rest.len();

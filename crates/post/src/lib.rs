@@ -32,6 +32,7 @@
 
 #[doc(hidden)]
 pub mod bench;
+mod body_names;
 mod boolean;
 mod closed;
 mod colliders;

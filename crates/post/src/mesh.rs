@@ -161,8 +161,12 @@ pub enum MeshDefect {
 
 /// Name of an object, `owner_kind_0001`, of letters, digits, `_` and `-` only: viewers strip or rewrite others.
 pub(crate) fn object_name(owner: &str, kind: &str, number: u32) -> String {
-    let plain = |c: char| if c.is_alphanumeric() || c == '-' { c } else { '_' };
-    format!("{}_{kind}_{number:04}", owner.chars().map(plain).collect::<String>())
+    format!("{}_{kind}_{number:04}", plain(owner))
+}
+
+/// A name with `_` in place of all but letters, digits and `-`.
+pub(crate) fn plain(name: &str) -> String {
+    name.chars().map(|c| if c.is_alphanumeric() || c == '-' { c } else { '_' }).collect()
 }
 
 fn rounded(position: [f64; 3]) -> [f64; 3] {

@@ -6,10 +6,11 @@ use super::gltf_document::Document;
 use super::gltf_document::made_by;
 use super::sequence_file::{About, Sequence};
 use super::{FileFormat, FormatError, Shot};
+use crate::body_names::body_names;
 use crate::mesh::{Content, Mesh, Vertex, object_name};
 use crate::provenance::Provenance;
 use crate::rigid::{RigidMotion, corners};
-use fissure_scene::{Body, Part, Point, Scene, Vector};
+use fissure_scene::{Part, Point, Scene, Vector};
 use gltf::json::{Index, Node};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -138,8 +139,8 @@ fn apart(a: (Point, Point), b: (Point, Point)) -> f64 {
 
 /// The body that a fragment is of.
 fn body_of(mesh: &Mesh, scene: &Scene) -> Option<u32> {
-    let is_of = |body: &Body| object_name(&body.name, "piece", mesh.piece) == mesh.name;
-    scene.bodies.iter().position(is_of).map(|body| body as u32)
+    let is_of = |body: &String| object_name(body, "piece", mesh.piece) == mesh.name;
+    body_names(scene).iter().position(is_of).map(|body| body as u32)
 }
 
 impl Span {
