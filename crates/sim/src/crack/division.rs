@@ -104,13 +104,13 @@ pub(crate) struct Share {
     pub(crate) gradient: Vector,
 }
 
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct TipRay {
     position: Point,
     ahead: Vector,
 }
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 struct Line {
     crack: u32,
     segments: Vec<(Point, Point)>,
@@ -166,12 +166,17 @@ enum SegmentKind {
 /// The cracks of a scene, ready to divide pairs.
 #[derive(Debug, Clone)]
 pub(crate) struct Division {
+    /// The cracks as they were given.
+    given: Vec<CrackLine>,
     lines: Vec<Line>,
+    tip_division: TipDivision,
+    cut: TipCut,
     cell_size: f64,
     particle_spacing: f64,
     /// How far from its segments a crack may divide pairs, along each axis [cells].
     reach: f64,
-    /// Line and segment by cell. Cells come from the scene, not from a stranger, so the hash need not be a strong one.
+    /// Line and segment by cell, rising. Cells come from the scene, not from a stranger, so the hash need not be a
+    /// strong one.
     buckets: FxHashMap<(i64, i64), Vec<(u32, u32)>>,
     has_junctions: bool,
 }
@@ -179,28 +184,84 @@ pub(crate) struct Division {
 impl Division {
     /// Prepares `lines` for pairs that lie at most `reach` cells apart along each axis.
     pub(crate) fn new(
-        lines: &[CrackLine],
+        lines: Vec<CrackLine>,
         tip_division: TipDivision,
         cut: TipCut,
         cell_size: f64,
         particle_spacing: f64,
         reach: f64,
     ) -> Self {
-        let lines: Vec<Line> = lines.iter().map(|l| prepare(l, tip_division, cut, cell_size, reach)).collect();
-        let mut buckets: FxHashMap<(i64, i64), Vec<(u32, u32)>> = FxHashMap::default();
-        for (line_index, line) in lines.iter().enumerate() {
-            for (segment_index, &(a, b)) in line.segments.iter().enumerate() {
-                let low = a.inf(&b).coords / cell_size - Vector::repeat(reach);
-                let high = a.sup(&b).coords / cell_size + Vector::repeat(reach);
-                for j in low.y.floor() as i64..=high.y.floor() as i64 {
-                    for i in low.x.floor() as i64..=high.x.floor() as i64 {
-                        buckets.entry((i, j)).or_default().push((line_index as u32, segment_index as u32));
-                    }
+        let mut division = Self {
+            given: Vec::new(),
+            lines: Vec::new(),
+            tip_division,
+            cut,
+            cell_size,
+            particle_spacing,
+            reach,
+            buckets: FxHashMap::default(),
+            has_junctions: false,
+        };
+        division.set_lines(lines);
+        division
+    }
+
+    /// Puts `lines` in the place of those before. The cost is that of what has changed: of a crack that has grown at its
+    /// end, that of its new segments.
+    pub(crate) fn set_lines(&mut self, lines: Vec<CrackLine>) {
+        for index in lines.len()..self.lines.len() {
+            self.take_out(index, 0);
+        }
+        self.lines.truncate(lines.len());
+        for (index, given) in lines.iter().enumerate() {
+            if self.given.get(index) == Some(given) {
+                continue;
+            }
+            let line = prepare(given, self.tip_division, self.cut, self.cell_size, self.reach);
+            let before = self.lines.get(index).map_or(&[][..], |before| &before.segments);
+            let unchanged = line.segments.iter().zip(before).take_while(|(now, before)| now == before).count();
+            if index < self.lines.len() {
+                self.take_out(index, unchanged);
+                self.lines[index] = line;
+            } else {
+                self.lines.push(line);
+            }
+            self.put_in(index, unchanged);
+        }
+        self.has_junctions = self.lines.iter().any(|l| l.has_junction);
+        self.given = lines;
+    }
+
+    /// Cells in which a segment may divide pairs.
+    fn cells_of(&self, (a, b): (Point, Point)) -> impl Iterator<Item = (i64, i64)> + use<> {
+        let low = a.inf(&b).coords / self.cell_size - Vector::repeat(self.reach);
+        let high = a.sup(&b).coords / self.cell_size + Vector::repeat(self.reach);
+        let columns = low.x.floor() as i64..=high.x.floor() as i64;
+        (low.y.floor() as i64..=high.y.floor() as i64).flat_map(move |j| columns.clone().map(move |i| (i, j)))
+    }
+
+    /// Puts the segments of a line from `first` on into the buckets.
+    fn put_in(&mut self, line: usize, first: usize) {
+        for segment in first..self.lines[line].segments.len() {
+            let entry = (line as u32, segment as u32);
+            for cell in self.cells_of(self.lines[line].segments[segment]) {
+                let bucket = self.buckets.entry(cell).or_default();
+                bucket.insert(bucket.partition_point(|&other| other < entry), entry);
+            }
+        }
+    }
+
+    /// Takes the segments of a line from `first` on out of the buckets.
+    fn take_out(&mut self, line: usize, first: usize) {
+        for segment in first..self.lines[line].segments.len() {
+            for cell in self.cells_of(self.lines[line].segments[segment]) {
+                let Some(bucket) = self.buckets.get_mut(&cell) else { continue };
+                bucket.retain(|&(l, s)| l as usize != line || (s as usize) < first);
+                if bucket.is_empty() {
+                    self.buckets.remove(&cell);
                 }
             }
         }
-        let has_junctions = lines.iter().any(|l| l.has_junction);
-        Self { lines, cell_size, particle_spacing, reach, buckets, has_junctions }
     }
 
     fn bucket(&self, point: Point) -> &[(u32, u32)] {
@@ -518,7 +579,7 @@ mod tests {
     }
 
     fn division(lines: &[CrackLine], tips: TipDivision, cut: TipCut) -> Division {
-        Division::new(lines, tips, cut, 1.0, SPACING, 1.5)
+        Division::new(lines.to_vec(), tips, cut, 1.0, SPACING, 1.5)
     }
 
     fn any_cut() -> impl Strategy<Value = TipCut> {
@@ -526,6 +587,33 @@ mod tests {
     }
 
     proptest! {
+        /// Truth: a division made at once. Cracks come, grow at both ends, turn and go.
+        #[test]
+        fn lines_put_in_the_place_of_others_divide_as_if_they_were_the_first(
+            rounds in prop::collection::vec(
+                any_lines(prop_oneof![Just(LineEnd::Tip), Just(LineEnd::Open(1.0))]), 1..5,
+            ),
+            grown in prop::collection::vec((0_usize..4, any::<bool>(), any_point()), 0..12), cut in any_cut(),
+        ) {
+            let mut changed = division(&[], TipDivision::PartlyCut, cut);
+            let mut lines = Vec::new();
+            let grow = |lines: &mut Vec<CrackLine>, (line, at_end, point): (usize, bool, Point)| {
+                let Some(line) = lines.get_mut(line) else { return };
+                line.points.insert(if at_end { line.points.len() } else { 0 }, point);
+            };
+            for given in rounds {
+                lines = given;
+                changed.set_lines(lines.clone());
+            }
+            for by in grown {
+                grow(&mut lines, by);
+                changed.set_lines(lines.clone());
+                let fresh = division(&lines, TipDivision::PartlyCut, cut);
+                prop_assert_eq!(&changed.lines, &fresh.lines);
+                prop_assert_eq!(&changed.buckets, &fresh.buckets);
+            }
+        }
+
         /// Truth: a partition of unity. The shares of a pair add up to one, their gradients to zero, none is negative,
         /// and no two are of one field.
         #[test]
@@ -617,7 +705,7 @@ mod tests {
             let trunk = CrackLine { crack: 0, points, start: LineEnd::Open(1.0), end: LineEnd::Tip, trunk: Vec::new() };
             let start = LineEnd::Junction { crack: 0, beyond: 2.0 };
             let branch = CrackLine { crack: 1, points: branch, start, end: LineEnd::Tip, trunk: behind[4..].to_vec() };
-            let division = Division::new(&[trunk, branch], TipDivision::PartlyCut, TipCut::tied(0.8), 1.0, SPACING, 1.0);
+            let division = Division::new(vec![trunk, branch], TipDivision::PartlyCut, TipCut::tied(0.8), 1.0, SPACING, 1.0);
             let sector = |p: Point| {
                 let angle = (p - at).y.atan2((p - at).x) - turn;
                 let angle = angle.sin().atan2(angle.cos());

@@ -96,7 +96,14 @@ impl Lattice {
             owners,
             body_of_crack: Vec::new(),
             materials: scene.materials.iter().map(|m| Elastic::new(m, scene.plane)).collect(),
-            division: Division::new(&[], tip_division, cut, scene.cell_size, scene.particle_spacing, 1.0),
+            division: Division::new(
+                Vec::new(),
+                tip_division,
+                cut,
+                scene.cell_size,
+                scene.particle_spacing,
+                kernel::reach(kernel),
+            ),
             layout,
             inverse_mass: Vec::new(),
             kernel,
@@ -109,9 +116,7 @@ impl Lattice {
     pub(super) fn set_cracks(&mut self, cracks: &Cracks) {
         let reach = self.reach();
         let lines = cracks.lines(|_, crack| crack.points_as_cut(), reach * self.grid.cell_size);
-        let cut = TipCut::tied(self.split_ahead);
-        self.division =
-            Division::new(&lines, self.tip_division, cut, self.grid.cell_size, self.particles.spacing, reach);
+        self.division.set_lines(lines);
         self.body_of_crack.clear();
         self.body_of_crack.extend(cracks.iter().map(|crack| crack.body));
     }

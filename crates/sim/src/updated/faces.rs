@@ -279,7 +279,7 @@ impl Faces {
         let lines = cracks.lines(points, reach * scene.cell_size);
         let tip_division = scene.solver.tip_division;
         Division::new(
-            &lines,
+            lines,
             tip_division,
             TipCut::smooth(scene.solver.kernel),
             scene.cell_size,

@@ -106,7 +106,7 @@ impl Lattice {
             grid: Grid::default(),
             order: RowOrder::default(),
             division: Division::new(
-                &[],
+                Vec::new(),
                 setup.scene.solver.tip_division,
                 TipCut::smooth(setup.scene.solver.kernel),
                 h,
