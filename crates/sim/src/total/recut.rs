@@ -104,24 +104,33 @@ impl Lattice {
         }
         affected.sort_unstable();
         affected.dedup();
-        let mut reader = self.reader();
-        let strains: Vec<Matrix> = affected.iter().map(|&p| reader.strain(p, &motion.displacement)).collect();
-        let mut stencils = Vec::with_capacity(affected.len());
+        let mut changed = Vec::with_capacity(affected.len());
         let mut changes: Vec<WeightChange> = Vec::new();
-        for &p in &affected {
+        for p in affected {
             let entries = self.make_entries(p);
+            // Where a tip divides, fields that were there move too.
+            if !divides && self.has_kept(p, &entries) {
+                continue;
+            }
+            let strain = self.reader().strain(p, &motion.displacement);
             self.note_changes(p, &entries, &mut changes);
-            stencils.push((p, entries));
+            changed.push((p, entries, strain));
         }
         let lost = self.move_weights(&changes, divides, motion);
-        self.layout.cut.replace(stencils);
-        for (&p, strain) in affected.iter().zip(strains) {
+        let strains: Vec<(usize, Matrix)> = changed.iter().map(|&(p, _, strain)| (p, strain)).collect();
+        self.layout.cut.replace(changed.into_iter().map(|(p, entries, _)| (p, entries)).collect());
+        for (p, strain) in strains {
             let misfit = strain - self.reader().gradient(p, &motion.displacement);
             // What only sums in another order has not changed.
             let is_real = misfit.norm() > ROUND_OFF * strain.norm();
             self.layout.cut.set_misfit(p, if is_real { misfit } else { Matrix::zeros() });
         }
         lost
+    }
+
+    /// Whether a particle has these entries already, and mass in each of its fields: then none of them is new to it.
+    fn has_kept(&self, particle: usize, entries: &[Entry]) -> bool {
+        self.layout.cut.entries_of(particle) == Some(entries) && entries.iter().all(|e| e.weight > NO_MASS)
     }
 
     /// Notes, node by node, how the weights of a particle move between its fields.
