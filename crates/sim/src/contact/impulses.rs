@@ -19,7 +19,7 @@ const CONVERGED: f64 = 1e-4;
 /// What lies inside comes out by this part of its depth in a step ...
 const RECOVERY: f64 = 0.1;
 /// ... but as if it were no deeper than this, in cells: a push that is stronger would add energy.
-const DEEPEST: f64 = 0.01;
+const DEEPEST: f64 = 3e-4;
 
 /// A field that takes part in a meeting.
 #[derive(Debug, Clone, Copy, PartialEq)]
