@@ -206,8 +206,8 @@ impl Division {
         division
     }
 
-    /// Puts `lines` in the place of those before. The cost is that of what has changed: of a crack that has grown at its
-    /// end, that of its new segments.
+    /// Puts `lines` in the place of those before. The cost is that of what has changed: of a crack that has grown at
+    /// its end, that of its new segments.
     pub(crate) fn set_lines(&mut self, lines: Vec<CrackLine>) {
         for index in lines.len()..self.lines.len() {
             self.take_out(index, 0);
