@@ -6,6 +6,9 @@
 //! under the shear τ − μ p alone: whatever the geometry, K_II = (1 − μ p/τ) times its value without pressure and
 //! contact, K_I = 0, and J = K_II²/E'. (Superposition; for the infinite plate K_II = (τ − μ p) √(π a).)
 //!
+//! Without pressure the faces slide along each other and just touch: in shear alone nothing opens or presses, and K_I and
+//! K_II are those of faces that may go through each other.
+//!
 //! Friction remembers, so the pressure comes first and the shear rises slowly and damped. Cells are counted along half
 //! the crack.
 
@@ -38,6 +41,8 @@ const VARIANTS: [(f64, &[f64]); 2] = [(0.0, &[0.0, 0.4]), (30.0, &[0.0, 0.2, 0.4
 enum Faces {
     /// Nothing presses, and they may go through each other.
     Apart,
+    /// Nothing presses, but they may not, and slide without friction.
+    Touching,
     /// Pressed together, with a coefficient of friction.
     Pressed(f64),
 }
@@ -68,6 +73,7 @@ fn problem(degrees: f64, cells: f64, faces: Faces) -> Problem {
     let mut stresses = vec![((shear + shear.transpose()) * SHEAR, ramp(0.25 * rise, 1.25 * rise))];
     match faces {
         Faces::Apart => solver.crack_contact = false,
+        Faces::Touching => solver.crack_friction = 0.0,
         Faces::Pressed(friction) => {
             solver.crack_friction = friction;
             stresses.push((normal * normal.transpose() * -PRESSURE, ramp(0.0, 0.25 * rise)));
@@ -134,6 +140,13 @@ fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationErr
         let apart = rest(&problem(degrees, cells, Faces::Apart), tally)?.tips;
         let shear = 0.5 * (apart[0][1] + apart[1][1]);
         let energy = shear * shear / elastic().effective_modulus;
+        let of = format!("crack at {degrees}°, shear alone");
+        tally.say(&of);
+        let touching = rest(&problem(degrees, cells, Faces::Touching), tally)?.tips;
+        for ([mode_1, mode_2, _], end) in touching.iter().zip(["start", "end"]) {
+            tally.absolute(format!("K_II/K_II apart, {of}, {end}"), "", mode_2 / shear, 1.0, 0.03);
+            tally.absolute(format!("K_I/K_II apart, {of}, {end}"), "", mode_1 / shear, 0.0, 0.01);
+        }
         for &friction in frictions {
             let of = format!("crack at {degrees}°, μ {friction}");
             tally.say(&of);
