@@ -90,8 +90,8 @@ fn slanted_crack() {
     within(&report, "mode angle", 1.5);
 }
 
-/// Measured 0.030 in K_II, 0.031 in J (targets 0.03 at 12 cells). Faces that slide and just touch at 30° press K_I up to
-/// 0.154 of K_II (target 0.01): a fault that is known.
+/// Measured 0.030 in K_II, 0.031 in J (targets 0.03 at 12 cells). Faces that slide and just touch at 30° press K_I up
+/// to 0.154 of K_II (target 0.01): a fault that is known.
 #[test]
 fn closed_crack() {
     let report = coarse("closed-crack", 6.0);

@@ -6,8 +6,8 @@
 //! under the shear τ − μ p alone: whatever the geometry, K_II = (1 − μ p/τ) times its value without pressure and
 //! contact, K_I = 0, and J = K_II²/E'. (Superposition; for the infinite plate K_II = (τ − μ p) √(π a).)
 //!
-//! Without pressure the faces slide along each other and just touch: in shear alone nothing opens or presses, and K_I and
-//! K_II are those of faces that may go through each other.
+//! Without pressure the faces slide along each other and just touch: in shear alone nothing opens or presses, and K_I
+//! and K_II are those of faces that may go through each other.
 //!
 //! Friction remembers, so the pressure comes first and the shear rises slowly and damped. Cells are counted along half
 //! the crack.
