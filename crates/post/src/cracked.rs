@@ -37,8 +37,24 @@ type ObjectKey = (u32, u32);
 
 /// One solid per fragment, by body and number.
 ///
-/// Each is made of its own boundary alone, so that what touches or overlaps is never joined.
+/// Each is made of its own boundary alone, so that what touches or overlaps is never joined. One that is no solid once
+/// its short edges and needles are gone keeps them.
 pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result<Vec<Mesh>, PostError> {
+    let mut meshes = cut_meshes(scene, frame, options)?;
+    let is_broken = |mesh: &Mesh| mesh.check().is_err();
+    if options.shortest_edge > 0.0 && meshes.iter().any(is_broken) {
+        let as_they_are = cut_meshes(scene, frame, &PostOptions { shortest_edge: 0.0, ..options.clone() })?;
+        for mesh in meshes.iter_mut().filter(|mesh| is_broken(mesh)) {
+            if let Some(other) = as_they_are.iter().find(|other| other.name == mesh.name) {
+                mesh.clone_from(other);
+            }
+        }
+    }
+    Ok(meshes)
+}
+
+/// The solids of all fragments, checked by nobody yet.
+fn cut_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result<Vec<Mesh>, PostError> {
     let fragments = Fragments::of_frame(frame);
     let numbers = numbers(&fragments, frame);
     let cracks = SmoothCracks::new(scene, frame, &fragments, options.smoothing);
