@@ -16,7 +16,7 @@ const DISC_CORNERS: usize = 128;
 /// Length of the slab that stands for a half-plane, and its depth, in diagonals of the box around all bodies at rest.
 const SLAB: (f64, f64) = (4.0, 0.25);
 
-/// One solid per collider, in the order of the scene.
+/// One solid per collider, in the order of the scene, checked.
 pub(crate) fn collider_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result<Vec<Mesh>, PostError> {
     let posed = scene.colliders.iter().zip(&frame.colliders).enumerate();
     posed.map(|(i, (collider, pose))| collider_mesh(scene, frame, i as u32, collider, *pose, options)).collect()
@@ -68,6 +68,8 @@ fn collider_mesh(
     let content = Content::Solid { area, thickness: options.thickness };
     let mut mesh = Mesh::new(object_name(&collider.name, "collider", index), index, content);
     shapes.iter().for_each(|shape| extrusion.solid(&triangulate(shape, Division::Plain), &[], &mut mesh));
+    let defect = |defect| PostError::Defect { frame: frame.number, mesh: mesh.name.clone(), defect };
+    mesh.check().map_err(defect)?;
     Ok(mesh)
 }
 

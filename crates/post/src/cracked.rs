@@ -9,7 +9,7 @@ use crate::explode::offsets;
 use crate::extrude::Extrusion;
 use crate::held_open::{parted_points, shifts as held_open};
 use crate::interior::Interior;
-use crate::mesh::{Content, Mesh, object_name};
+use crate::mesh::{Content, Mesh, MeshDefect, object_name};
 use crate::needles::blunt_needles;
 use crate::options::PostOptions;
 use crate::outline::outline_edges;
@@ -34,27 +34,13 @@ const WIDEST_OVERLAP: f64 = 0.25;
 
 /// Body and number of an object.
 type ObjectKey = (u32, u32);
+/// The edges around each object.
+type Boundaries = BTreeMap<ObjectKey, Vec<SourceEdge>>;
 
-/// One solid per fragment, by body and number.
+/// One solid per fragment, by body and number, checked.
 ///
-/// Each is made of its own boundary alone, so that what touches or overlaps is never joined. One that is no solid once
-/// its short edges and needles are gone keeps them.
+/// Each is made of its own boundary alone, so that what touches or overlaps is never joined.
 pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result<Vec<Mesh>, PostError> {
-    let mut meshes = cut_meshes(scene, frame, options)?;
-    let is_broken = |mesh: &Mesh| mesh.check().is_err();
-    if options.shortest_edge > 0.0 && meshes.iter().any(is_broken) {
-        let as_they_are = cut_meshes(scene, frame, &PostOptions { shortest_edge: 0.0, ..options.clone() })?;
-        for mesh in meshes.iter_mut().filter(|mesh| is_broken(mesh)) {
-            if let Some(other) = as_they_are.iter().find(|other| other.name == mesh.name) {
-                mesh.clone_from(other);
-            }
-        }
-    }
-    Ok(meshes)
-}
-
-/// The solids of all fragments, checked by nobody yet.
-fn cut_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result<Vec<Mesh>, PostError> {
     let fragments = Fragments::of_frame(frame);
     let numbers = numbers(&fragments, frame);
     let cracks = SmoothCracks::new(scene, frame, &fragments, options.smoothing);
@@ -83,7 +69,7 @@ fn cut_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result<Vec
     }
     let solids = Solids::new(scene, frame, options, &grids);
     let mut meshes = BTreeMap::new();
-    let mut opened = Vec::new();
+    let mut opened = Boundaries::new();
     for ((body, piece), fragments) in objects {
         if options.cut == Cut::Rest
             && let Some(mesh) = solids.at_rest(body, piece, &fragments)
@@ -91,9 +77,10 @@ fn cut_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result<Vec
             meshes.extend(mesh.map(|mesh| ((body, piece), mesh)));
             continue;
         }
-        opened.push(solids.enclosed(body, piece, fragments.into_iter().flatten().flatten().collect())?);
+        opened.insert((body, piece), fragments.into_iter().flatten().flatten().collect());
     }
-    meshes.extend(solids.opened(opened)?);
+    meshes.extend(solids.opened(&opened)?);
+    // What has been checked stays as it is: the grid reaches so far.
     let apart = |(object, mesh): (ObjectKey, Mesh)| {
         let offset = offsets.get(&object).copied().unwrap_or_default();
         mesh.moved(grids[object.0 as usize].nearest(offset))
@@ -126,10 +113,10 @@ fn farthest<'a>(vectors: impl Iterator<Item = &'a Vector>) -> f64 {
     vectors.map(Vector::amax).fold(0.0, f64::max)
 }
 
-/// One solid per body, without its cracks.
+/// One solid per body, without its cracks, checked.
 pub(crate) fn whole_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result<Vec<Mesh>, PostError> {
     let grids = grids(scene, frame, &[], 0.0)?;
-    let mut bodies = Vec::with_capacity(grids.len());
+    let mut bodies = Boundaries::new();
     let options = &PostOptions { cut: Cut::Opening, ..options.clone() };
     let solids = Solids::new(scene, frame, options, &grids);
     for (body, &grid) in (0..).zip(&grids) {
@@ -138,9 +125,9 @@ pub(crate) fn whole_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) 
         let particles = &frame.particles;
         let of_body = (0..particles.len()).filter(|&p| particles.body[p] == body);
         let piece = of_body.map(|p| particles.piece[p]).min().unwrap_or(0);
-        bodies.push(solids.enclosed(body, piece, sources)?);
+        bodies.insert((body, piece), sources);
     }
-    Ok(solids.opened(bodies)?.into_iter().map(|(_, mesh)| mesh).collect())
+    Ok(solids.opened(&bodies)?.into_values().collect())
 }
 
 /// The grid of each body, fine enough for its outline and `cracks`, all moved by so much `beyond` [m].
@@ -165,19 +152,69 @@ struct Solids<'a> {
     grids: &'a [Grid],
     interiors: Vec<Interior<'a>>,
     names: Vec<String>,
+    check: fn(&Mesh) -> Result<(), MeshDefect>,
 }
 
 impl<'a> Solids<'a> {
     fn new(scene: &'a Scene, frame: &'a Frame, options: &'a PostOptions, grids: &'a [Grid]) -> Self {
         let interior = |body| Interior::new(frame, body, scene.particle_spacing, options.cut);
         let interiors = (0..scene.bodies.len() as u32).map(interior).collect();
-        Self { scene, frame, options, grids, interiors, names: body_names(scene) }
+        Self { scene, frame, options, grids, interiors, names: body_names(scene), check: Mesh::check }
     }
 
-    /// What the boundary of fragment `piece` encloses as it is now; nothing where that is no more than rounding.
-    fn enclosed(&self, body: u32, piece: u32, sources: Vec<SourceEdge>) -> Result<Enclosed, PostError> {
+    /// Extrudes what the boundaries of fragments enclose as they are now; nothing where that is no more than rounding.
+    /// One that is no solid once its short edges and needles are gone keeps them.
+    fn opened(&self, boundaries: &Boundaries) -> Result<BTreeMap<ObjectKey, Mesh>, PostError> {
+        let checked = |mesh: Mesh| (self.check)(&mesh).map(|()| mesh);
+        let mut solids = BTreeMap::new();
+        let mut broken = BTreeMap::new();
+        for fragment in self.apart(boundaries, |_| self.options.shortest_edge)? {
+            let (object, Some(mesh)) = (fragment.object(), self.solid(fragment)) else { continue };
+            let name = mesh.name.clone();
+            match checked(mesh) {
+                Ok(mesh) => drop(solids.insert(object, mesh)),
+                Err(defect) => drop(broken.insert(object, (name, defect))),
+            }
+        }
+        if broken.is_empty() {
+            return Ok(solids);
+        }
+        let shortest = |object| if broken.contains_key(&object) { 0.0 } else { self.options.shortest_edge };
+        for fragment in self.apart(boundaries, shortest)? {
+            if let Some((name, _)) = broken.get(&fragment.object())
+                && let (object, Some(mesh)) = (fragment.object(), self.solid(fragment))
+            {
+                let of_mesh = |defect| PostError::Defect { frame: self.frame.number, mesh: name.clone(), defect };
+                solids.insert(object, checked(mesh).map_err(of_mesh)?);
+            }
+        }
+        Ok(solids)
+    }
+
+    /// What the boundaries of fragments enclose, those that lie in each other up to the middle of it. `shortest` edge
+    /// of each, as a part of its body.
+    fn apart(&self, boundaries: &Boundaries, shortest: impl Fn(ObjectKey) -> f64) -> Result<Vec<Enclosed>, PostError> {
+        let enclosed = |(&object, sources): (&ObjectKey, &Vec<SourceEdge>)| {
+            self.enclosed(object, sources.clone(), shortest(object))
+        };
+        let mut fragments = boundaries.iter().map(enclosed).collect::<Result<Vec<_>, _>>()?;
+        let material = |of: &Enclosed, place| self.interiors[of.body as usize].at(place, of.piece);
+        share_out_overlaps(&mut fragments, WIDEST_OVERLAP * self.scene.cell_size, material);
+        for fragment in fragments.iter_mut().filter(|fragment| fragment.has_lost) {
+            self.tidy(fragment, Growth::Hardly)?;
+        }
+        Ok(fragments)
+    }
+
+    /// What the boundary of a fragment encloses.
+    fn enclosed(
+        &self,
+        (body, piece): ObjectKey,
+        sources: Vec<SourceEdge>,
+        shortest: f64,
+    ) -> Result<Enclosed, PostError> {
         let grid = self.grids[body as usize];
-        let least = self.options.shortest_edge * size(self.scene, body) / grid.step;
+        let least = shortest * size(self.scene, body) / grid.step;
         let shapes = without_slivers(material(&sources));
         let mut enclosed = Enclosed { body, piece, grid, shapes, sources, least, has_lost: false };
         self.tidy(&mut enclosed, Growth::Allowed)?;
@@ -205,21 +242,6 @@ impl<'a> Solids<'a> {
             without_short_edges(&mut of.shapes, of.least, growth, sources, is_drawn);
         }
         Ok(())
-    }
-
-    /// Extrudes fragments as they are now, by body and number, those that lie in each other up to the middle of it.
-    fn opened(&self, mut fragments: Vec<Enclosed>) -> Result<Vec<(ObjectKey, Mesh)>, PostError> {
-        let material = |of: &Enclosed, place| self.interiors[of.body as usize].at(place, of.piece);
-        share_out_overlaps(&mut fragments, WIDEST_OVERLAP * self.scene.cell_size, material);
-        let mut meshes = Vec::with_capacity(fragments.len());
-        for mut fragment in fragments {
-            if fragment.has_lost {
-                self.tidy(&mut fragment, Growth::Hardly)?;
-            }
-            let object = (fragment.body, fragment.piece);
-            meshes.extend(self.solid(fragment).map(|mesh| (object, mesh)));
-        }
-        Ok(meshes)
     }
 
     /// Extrudes a fragment; nothing where it is smaller than asked for.
@@ -252,7 +274,7 @@ impl<'a> Solids<'a> {
         }
         caps.retain(|(cap, _)| area(&cap.shape, grid) >= self.options.smallest_fragment);
         let mesh = self.mesh(body, piece, &self.extrusion(body, &sources), caps);
-        mesh.as_ref().is_none_or(|mesh| mesh.check().is_ok()).then_some(mesh)
+        mesh.as_ref().is_none_or(|mesh| (self.check)(mesh).is_ok()).then_some(mesh)
     }
 
     fn extrusion<'b>(&self, body: u32, sources: &'b [SourceEdge]) -> Extrusion<'b> {
@@ -286,4 +308,54 @@ fn is_drawn(region: &Region, edge: &Edge, source: &SourceEdge) -> bool {
     let is_corner = |carried: &Carried| region.rings().flatten().any(|corner| *corner == carried.rest);
     let is_whole = (edge.a, edge.b) == (source.a, source.b);
     is_whole && source.slot == Slot::Outside && source.carried.iter().all(is_corner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::common::{options, scene, square};
+    use fissure_scene::Point;
+
+    /// The square of 1 m at `x`, with an edge of 1e-4 m along one side and a corner that stands out by as much.
+    fn boundary(x: f64, grid: Grid) -> Vec<SourceEdge> {
+        let corners = [(0.0, 0.0), (0.5, 0.0), (0.500_05, -1e-4), (0.5001, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+        let places = corners.map(|(u, v)| Point::new(x + u, v));
+        let carried = |rest| Carried { rest, velocity: Vector::zeros(), arc: 0.0 };
+        let edge = |(a, b): (&Point, &Point)| SourceEdge {
+            a: grid.snap(*a),
+            b: grid.snap(*b),
+            carried: [carried(*a), carried(*b)],
+            slot: Slot::Inside,
+        };
+        places.iter().zip(places.iter().cycle().skip(1)).map(edge).collect()
+    }
+
+    fn stands_out(mesh: &Mesh) -> bool {
+        mesh.vertices.iter().any(|vertex| vertex.position[1] < 0.0)
+    }
+
+    /// Truth: by hand. Of two fragments with short edges the one that is no solid without them keeps them; one that is
+    /// none with them either is an error that names it.
+    #[test]
+    fn a_fragment_that_breaks_without_its_short_edges_keeps_them() {
+        let (scene, frame) = (scene(square(20.0)), Frame::default());
+        let (options, grid) = (options(&scene), Grid::covering(&[Point::new(20.0, 20.0)], 0.0));
+        let boundaries = Boundaries::from([((0, 3), boundary(0.0, grid)), ((0, 4), boundary(2.0, grid))]);
+        let defect = MeshDefect::Open { place: [0.0; 3] };
+        let grids = [grid];
+        let mut solids = Solids::new(&scene, &frame, &options, &grids);
+        let shown = |solids: &Solids<'_>| {
+            let meshes = solids.opened(&boundaries)?;
+            Ok::<Vec<bool>, PostError>(meshes.values().map(stands_out).collect())
+        };
+        assert_eq!(shown(&solids), Ok(vec![false, false]));
+        solids.check = |mesh| {
+            let is_broken = mesh.piece == 4 && !stands_out(mesh);
+            if is_broken { Err(MeshDefect::Open { place: [0.0; 3] }) } else { mesh.check() }
+        };
+        assert_eq!(shown(&solids), Ok(vec![false, true]));
+        solids.check = |mesh| if mesh.piece == 4 { Err(MeshDefect::Open { place: [0.0; 3] }) } else { mesh.check() };
+        let mesh = "plate_piece_0004".to_owned();
+        assert_eq!(shown(&solids), Err(PostError::Defect { frame: 0, mesh, defect }));
+    }
 }

@@ -30,12 +30,18 @@
 //! overlap by more than a quarter of a cell in the mean; openings below two grid steps (4e-6 m in a body of 20 m) may
 //! be shown closed.
 
+#[cfg(test)]
+extern crate self as fissure_post;
+
 #[doc(hidden)]
 pub mod bench;
 mod body_names;
 mod boolean;
 mod closed;
 mod colliders;
+#[cfg(test)]
+#[path = "../tests/common/mod.rs"]
+mod common;
 mod cracked;
 mod edges;
 mod error;

@@ -39,6 +39,13 @@ pub(crate) struct Enclosed {
     pub(crate) has_lost: bool,
 }
 
+impl Enclosed {
+    /// Body and number.
+    pub(crate) fn object(&self) -> (u32, u32) {
+        (self.body, self.piece)
+    }
+}
+
 /// Shares out what two of `fragments` have in common, but for overlaps wider than `widest` [m] in the mean, which are
 /// no inaccuracy of contact.
 ///

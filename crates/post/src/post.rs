@@ -55,10 +55,6 @@ pub fn post_frame(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result
             Part::Collider => collider_meshes(scene, frame, options)?,
             Part::Particles => particle_meshes(scene, frame),
         };
-        for mesh in &meshes {
-            let defect = |defect| PostError::Defect { frame: frame.number, mesh: mesh.name.clone(), defect };
-            mesh.check().map_err(defect)?;
-        }
         parts.push((part, meshes));
     }
     Ok(FrameMeshes { provenance: Provenance::new(scene, frame), up: options.up, parts })

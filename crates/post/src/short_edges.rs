@@ -1,7 +1,7 @@
 //! Edges so short that readers that merge vertices by distance would close them.
 
 use crate::boolean::{Contour, Edge, Shape, SourceIndex};
-use crate::snap::GridPoint;
+use crate::snap::{GridPoint, turn};
 use crate::source::{Carried, SourceEdge};
 
 /// Whether polygons may become larger where short edges are taken out.
@@ -35,31 +35,31 @@ pub(crate) fn without_short_edges(
     for shape in shapes.iter_mut() {
         let outer = shape.first().is_some_and(|outer| outer.iter().all(|edge| is_short(edge, sources)));
         shape.retain(|contour| !outer && !contour.iter().all(|edge| is_short(edge, sources)));
-        for index in 0..shape.len() {
+    }
+    shapes.retain(|shape| !shape.is_empty());
+    for index in 0..shapes.len() {
+        for number in 0..shapes[index].len() {
             // What cannot go yet may go when a corner beside it has gone.
             loop {
-                let short = (0..shape[index].len()).filter(|&i| is_short(&shape[index][i], sources));
-                let Some(first) = short.filter_map(|found| without(shape, index, found, most_growth)).next() else {
-                    break;
-                };
-                merge(&mut shape[index], first, sources);
+                let contour = &shapes[index][number];
+                let mut short = (0..contour.len()).filter(|&i| is_short(&contour[i], sources));
+                let Some(first) = short.find_map(|found| without(shapes, contour, found, most_growth)) else { break };
+                merge(&mut shapes[index][number], first, sources);
             }
         }
     }
-    shapes.retain(|shape| !shape.is_empty());
 }
 
-/// The first of the two edges that one may take the place of, so that edge `found` of a contour is gone; none if the
-/// contour would then touch another one, have no area, or twice as much as `most_growth` says is more.
-fn without(shape: &Shape, index: usize, found: usize, most_growth: i128) -> Option<usize> {
-    let contour = &shape[index];
+/// The first of the two edges that one may take the place of, so that edge `found` of `contour`, one of `shapes`, is
+/// gone; none if the contour would then touch another one, have no area, or grow by more than half of `most_growth`.
+fn without(shapes: &[Shape], contour: &Contour, found: usize, most_growth: i128) -> Option<usize> {
     let count = contour.len();
     let mut ways = [(found + count - 1) % count, found];
     if turned(contour, ways[0]).unsigned_abs() > turned(contour, ways[1]).unsigned_abs() {
         ways.swap(0, 1);
     }
     // Where the contour turns right, material comes to it.
-    let may_go = |first: usize| -turned(contour, first) <= most_growth && is_free(shape, index, first);
+    let may_go = |first: usize| -turned(contour, first) <= most_growth && is_free(shapes, contour, first);
     ways.into_iter().find(|&first| count > 3 && may_go(first))
 }
 
@@ -70,17 +70,11 @@ fn length(edge: &Edge) -> f64 {
 /// Twice the area of the triangle of an edge and the one after it.
 fn turned(contour: &Contour, first: usize) -> i128 {
     let second = &contour[(first + 1) % contour.len()];
-    side(contour[first].a, contour[first].b, second.b)
-}
-
-/// Twice the area of the triangle, positive if counter-clockwise.
-fn side(a: GridPoint, b: GridPoint, c: GridPoint) -> i128 {
-    i128::from(b.x - a.x) * i128::from(c.y - a.y) - i128::from(b.y - a.y) * i128::from(c.x - a.x)
+    turn(contour[first].a, contour[first].b, second.b)
 }
 
 /// Whether no corner lies in or on the triangle between an edge with the one after it and the edge that replaces both.
-fn is_free(shape: &Shape, index: usize, first: usize) -> bool {
-    let contour = &shape[index];
+fn is_free(shapes: &[Shape], contour: &Contour, first: usize) -> bool {
     let second = contour[(first + 1) % contour.len()];
     let (a, b, c) = (contour[first].a, second.a, second.b);
     let [low_x, high_x] = [a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x)];
@@ -89,10 +83,10 @@ fn is_free(shape: &Shape, index: usize, first: usize) -> bool {
         if p.x < low_x || p.x > high_x || p.y < low_y || p.y > high_y {
             return true;
         }
-        let sides = [side(a, b, p), side(b, c, p), side(c, a, p)];
+        let sides = [turn(a, b, p), turn(b, c, p), turn(c, a, p)];
         p == a || p == b || p == c || (sides.iter().any(|s| *s > 0) && sides.iter().any(|s| *s < 0))
     };
-    a != c && shape.iter().flatten().all(|edge| is_outside(edge.a))
+    a != c && shapes.iter().flatten().flatten().all(|edge| is_outside(edge.a))
 }
 
 /// Puts one edge in the place of edge `first` and the one after it. It carries on both sides what they carry there, and

@@ -7,6 +7,11 @@ use i_overlay::i_float::int::point::IntPoint;
 /// A place on the grid, in grid steps.
 pub(crate) type GridPoint = IntPoint<i64>;
 
+/// Twice the area of the triangle, exact; positive if counter-clockwise.
+pub(crate) fn turn(a: GridPoint, b: GridPoint, c: GridPoint) -> i128 {
+    i128::from(b.x - a.x) * i128::from(c.y - a.y) - i128::from(b.y - a.y) * i128::from(c.x - a.x)
+}
+
 /// Part of the reach by which later stages may go beyond it.
 const MARGIN: f64 = 1.0 / 4096.0;
 /// Bits of the mantissa of an `f32`, the hidden one included.

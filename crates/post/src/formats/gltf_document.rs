@@ -136,7 +136,8 @@ impl Document {
         let texture = self.floats(texture, vertices.len(), Type::Vec2);
         attributes.insert(Valid(Semantic::Normals), normals);
         attributes.insert(Valid(Semantic::TexCoords(0)), texture);
-        let indices = triangles.iter().flatten().flat_map(|i| i.to_le_bytes()).collect();
+        let mut indices = Vec::with_capacity(12 * triangles.len());
+        triangles.iter().flatten().for_each(|i| indices.extend(i.to_le_bytes()));
         let indices = self.accessor(
             indices,
             3 * triangles.len(),
@@ -167,7 +168,8 @@ impl Document {
     }
 
     fn floats(&mut self, values: impl Iterator<Item = f32>, count: usize, kind: Type) -> Index<Accessor> {
-        let bytes = values.flat_map(f32::to_le_bytes).collect();
+        let mut bytes = Vec::with_capacity(16 * count);
+        values.for_each(|value| bytes.extend(value.to_le_bytes()));
         self.accessor(bytes, count, kind, ComponentType::F32, Some(Target::ArrayBuffer))
     }
 

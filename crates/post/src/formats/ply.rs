@@ -7,7 +7,7 @@ use crate::provenance::Provenance;
 use crate::slot::Slot;
 use fissure_scene::Part;
 use ply_rs_bw::ply::{
-    Addable, ElementDef, Encoding, Ply, PropertyAccess, PropertyDef, PropertyType::List, PropertyType::Scalar,
+    Addable, DefaultElement, ElementDef, Encoding, Header, PropertyDef, PropertyType::List, PropertyType::Scalar,
     ScalarType,
 };
 use ply_rs_bw::writer::Writer;
@@ -26,31 +26,30 @@ const POINT_PROPERTIES: [&str; 7] = ["x", "y", "z", "vx", "vy", "vz", "piece"];
 /// When the writer refuses, which for a buffer in memory means a mistake of ours.
 fn bytes(meshes: &[Mesh], provenance: &Provenance, convention: Convention) -> Result<Vec<u8>, FormatError> {
     let points_only = !meshes.is_empty() && meshes.iter().all(|m| m.content == Content::Points);
-    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
-    for mesh in meshes {
-        add_rows(mesh, convention, &mut vertices, &mut faces);
-    }
-
-    let mut ply = Ply::<Row>::new();
-    ply.header.encoding = Encoding::BinaryLittleEndian;
-    ply.header.comments = comments(provenance);
-    let mut vertex = ElementDef::new("vertex".to_owned());
+    let mut rows = Rows { points_only, ..Rows::default() };
+    meshes.iter().for_each(|mesh| rows.add(mesh, convention));
     let names: &[&str] = if points_only { &POINT_PROPERTIES } else { &MESH_PROPERTIES };
-    for name in names {
-        vertex.properties.add(PropertyDef::new((*name).to_owned(), Scalar(ScalarType::Float)));
-    }
-    ply.header.elements.add(vertex);
-    ply.payload.insert("vertex".to_owned(), vertices);
+    let mut header = Header::new();
+    header.encoding = Encoding::BinaryLittleEndian;
+    header.comments = comments(provenance);
+    let floats = names.iter().map(|name| PropertyDef::new((*name).to_owned(), Scalar(ScalarType::Float)));
+    header.elements.add(element("vertex", rows.vertex_count, floats));
     if !points_only {
-        let mut face = ElementDef::new("face".to_owned());
         let indices = PropertyDef::new("vertex_indices".to_owned(), List(ScalarType::UChar, ScalarType::Int));
-        face.properties.add(indices);
-        ply.header.elements.add(face);
-        ply.payload.insert("face".to_owned(), faces);
+        header.elements.add(element("face", rows.face_count, std::iter::once(indices)));
     }
-    let mut written = Vec::new();
-    Writer::new().write_ply(&mut written, &mut ply)?;
+    let mut written = Vec::with_capacity(1024 + rows.vertices.len() + rows.faces.len());
+    Writer::<DefaultElement>::new().write_header(&mut written, &header)?;
+    written.extend(rows.vertices);
+    written.extend(rows.faces);
     Ok(written)
+}
+
+fn element(name: &str, count: usize, properties: impl Iterator<Item = PropertyDef>) -> ElementDef {
+    let mut element = ElementDef::new(name.to_owned());
+    element.count = count;
+    properties.for_each(|property| element.properties.add(property));
+    element
 }
 
 /// Binary PLY.
@@ -82,57 +81,48 @@ fn comments(provenance: &Provenance) -> Vec<String> {
     lines.map(|line| line.replace(['\r', '\n'], " ")).to_vec()
 }
 
-/// Adds vertices and faces of `mesh`; the vertices of each slot are its own, so that each has one slot.
-fn add_rows(mesh: &Mesh, convention: Convention, vertices: &mut Vec<Row>, faces: &mut Vec<Row>) {
-    let piece = mesh.piece as f32;
-    if mesh.content == Content::Points {
-        vertices.extend(mesh.vertices.iter().map(|v| Row::Vertex { vertex: pack(v, convention), piece, slot: 0.0 }));
-        return;
-    }
-    for slot in Slot::ALL {
-        let first = vertices.len() as i32;
-        let (of_slot, triangles) = compact(mesh, mesh.slot(slot), convention);
-        let slot = f32::from(slot as u8);
-        vertices.extend(of_slot.into_iter().map(|vertex| Row::Vertex { vertex, piece, slot }));
-        faces.extend(triangles.iter().map(|t| Row::Face(t.map(|i| first + i as i32))));
-    }
+/// The bytes of both elements.
+#[derive(Default)]
+struct Rows {
+    /// Whether vertices have no normals, texture coordinates and slots.
+    points_only: bool,
+    vertices: Vec<u8>,
+    vertex_count: usize,
+    faces: Vec<u8>,
+    face_count: usize,
 }
 
-/// A row of either element.
-enum Row {
-    Vertex { vertex: PackedVertex, piece: f32, slot: f32 },
-    Face([i32; 3]),
-}
-
-impl PropertyAccess for Row {
-    fn new() -> Self {
-        Self::Face([0; 3])
-    }
-
-    fn get_float(&self, name: &str) -> Option<f32> {
-        let Self::Vertex { vertex, piece, slot } = self else { return None };
-        Some(match name {
-            "x" => vertex.position[0],
-            "y" => vertex.position[1],
-            "z" => vertex.position[2],
-            "nx" => vertex.normal[0],
-            "ny" => vertex.normal[1],
-            "nz" => vertex.normal[2],
-            "s" => vertex.texture[0],
-            "t" => vertex.texture[1],
-            "vx" => vertex.velocity[0],
-            "vy" => vertex.velocity[1],
-            "vz" => vertex.velocity[2],
-            "piece" => *piece,
-            "slot" => *slot,
-            _ => return None,
-        })
-    }
-
-    fn get_list_int(&self, name: &str) -> Option<&[i32]> {
-        match self {
-            Self::Face(indices) if name == "vertex_indices" => Some(indices),
-            _ => None,
+impl Rows {
+    /// Adds vertices and faces of `mesh`; the vertices of each slot are its own, so that each has one slot.
+    fn add(&mut self, mesh: &Mesh, convention: Convention) {
+        if mesh.content == Content::Points {
+            mesh.vertices.iter().for_each(|vertex| self.vertex(&pack(vertex, convention), mesh.piece, 0));
+            return;
         }
+        for slot in Slot::ALL {
+            let first = self.vertex_count as u32;
+            let (vertices, triangles) = compact(mesh, mesh.slot(slot), convention);
+            vertices.iter().for_each(|vertex| self.vertex(vertex, mesh.piece, slot as u8));
+            for triangle in &triangles {
+                self.faces.push(3);
+                triangle.iter().for_each(|i| self.faces.extend((first + i).to_le_bytes()));
+            }
+            self.face_count += triangles.len();
+        }
+    }
+
+    fn vertex(&mut self, vertex: &PackedVertex, piece: u32, slot: u8) {
+        let mut floats = |values: &[f32]| values.iter().for_each(|value| self.vertices.extend(value.to_le_bytes()));
+        floats(&vertex.position);
+        if !self.points_only {
+            floats(&vertex.normal);
+            floats(&vertex.texture);
+        }
+        floats(&vertex.velocity);
+        floats(&[piece as f32]);
+        if !self.points_only {
+            floats(&[f32::from(slot)]);
+        }
+        self.vertex_count += 1;
     }
 }
