@@ -184,7 +184,7 @@ fn branching_plate() {
 #[test]
 fn kink_angles() {
     let report = coarse("kink-angles", 8.0);
-    worked(&report, [3796, 136, 9]);
+    worked(&report, [3616, 16, 12]);
     within(&report, "angle asked for", 1.2);
     within(&report, "kink of the crack", 1.2);
 }

@@ -94,8 +94,7 @@ fn dividing(half_height: f64, has_two_tips: bool) -> Problem {
     problem
 }
 
-/// A moment of a run: the tips [m] from top to bottom and from left to right, and the velocities of the particles [m/s]
-/// in the order of their places.
+/// A moment of a run: the tips [m], and the velocities of the particles [m/s] in the order of their places.
 struct Moving {
     tips: Vec<Point>,
     velocities: Vec<Vector>,
@@ -110,8 +109,7 @@ fn course(problem: &Problem, placement: Placement, flip: bool) -> Result<Vec<Mov
     while !placed.is_finished() {
         placed.advance()?;
         let Frame { particles, tips, .. } = placed.now().frame();
-        let mut tips: Vec<Point> = tips.iter().map(|tip| Point::new(tip.position.x, sign * tip.position.y)).collect();
-        tips.sort_by_key(|tip| [-tip.y, tip.x].map(|x| (1e3 * x / h).round() as i64));
+        let tips = tips.iter().map(|tip| Point::new(tip.position.x, sign * tip.position.y)).collect();
         let image = particles.velocity.iter().map(|v| Vector::new(v.x, sign * v.y));
         let mut moving: Vec<_> = particles.rest.iter().map(place).zip(image).collect();
         moving.sort_by_key(|(place, _)| *place);
@@ -126,7 +124,10 @@ fn apart(one: &[Moving], other: &[Moving], h: f64) -> f64 {
     for (a, b) in one.iter().zip(other) {
         assert_eq!((a.tips.len(), a.velocities.len()), (b.tips.len(), b.velocities.len()));
         let fastest = a.velocities.iter().map(|v| v.norm()).fold(f64::MIN_POSITIVE, f64::max);
-        most = a.tips.iter().zip(&b.tips).map(|(a, b)| (a - b).norm() / h).fold(most, f64::max);
+        for (tips, others) in [(&a.tips, &b.tips), (&b.tips, &a.tips)] {
+            let to_nearest = |tip: &Point| others.iter().map(|other| (tip - other).norm() / h).fold(f64::MAX, f64::min);
+            most = tips.iter().map(to_nearest).fold(most, f64::max);
+        }
         most = a.velocities.iter().zip(&b.velocities).map(|(a, b)| (a - b).norm() / fastest).fold(most, f64::max);
     }
     most

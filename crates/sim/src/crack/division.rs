@@ -13,6 +13,7 @@
 //! as if the crack went on straight ahead.
 
 use crate::crack::crossing::{Meeting, Segment, Side, meeting};
+use crate::crack::split::{Split, runs_through};
 use fissure_plane::{Point, Vector, orientation};
 use fissure_scene::{Kernel, TipDivision};
 use rustc_hash::FxHashMap;
@@ -330,6 +331,26 @@ impl Division {
                 visit(line.crack, line.of[segment as usize] as usize);
             }
         }
+    }
+
+    /// How the square around `center`, `half` [m] to each side, is split by the only crack that runs through it of
+    /// those that `counts`; none where there is none, or several.
+    pub(crate) fn split_square(&self, center: Point, half: f64, counts: impl Fn(u32) -> bool) -> Option<Split> {
+        let mut chain = Vec::new();
+        let mut of = None;
+        for &(index, segment) in self.bucket(center) {
+            let line = &self.lines[index as usize];
+            let is_part = matches!(line.kinds[segment as usize], SegmentKind::Real | SegmentKind::AheadOfTip);
+            let segment = line.segments[segment as usize];
+            if !is_part || !counts(line.crack) || !runs_through(center, half, segment) {
+                continue;
+            }
+            if *of.get_or_insert(index) != index {
+                return None;
+            }
+            chain.push(segment);
+        }
+        Split::of_square(center, half, &chain)
     }
 
     /// What the line from `particle` to `node` crosses.

@@ -7,6 +7,7 @@ pub(crate) mod crossing;
 pub(crate) mod division;
 pub(crate) mod fragments;
 pub(crate) mod guide;
+pub(crate) mod split;
 pub(crate) mod tip;
 
 use crate::crack::cracks::{ENDS, TipId};

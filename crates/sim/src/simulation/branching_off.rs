@@ -70,8 +70,7 @@ impl Simulation {
             }
         }
         if !changed.is_empty() {
-            self.state.crack_energy += self.solver.recut(&self.state.cracks, &changed);
-            self.counts.recuts += changed.len() as u64;
+            self.recut(&changed);
         }
     }
 

@@ -154,8 +154,7 @@ impl Simulation {
                 }
             }
             if !changed.is_empty() {
-                self.state.crack_energy += self.solver.recut(&self.state.cracks, &changed);
-                self.counts.recuts += changed.len() as u64;
+                self.recut(&changed);
             }
             sliding.retain(|tip| {
                 let arrives = self.slide(tip.id, &tip.assessed, time);
@@ -169,6 +168,18 @@ impl Simulation {
             }
             tips = sliding;
         }
+    }
+
+    /// Cuts around tips that have got farther. What a cut loses has been taken out of the body by their way as well.
+    pub(super) fn recut(&mut self, changed: &[TipId]) {
+        let lost = self.solver.recut(&self.state.cracks, changed);
+        self.state.crack_energy += lost;
+        for &id in changed {
+            if let Some(tip) = self.state.cracks.tip_mut(id) {
+                tip.balance += lost / changed.len() as f64;
+            }
+        }
+        self.counts.recuts += changed.len() as u64;
     }
 
     /// What a tip does next.

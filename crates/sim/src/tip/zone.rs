@@ -23,6 +23,8 @@ pub(crate) struct TipZone {
     pub(crate) opening: Vector,
     /// Distance behind the tip at which the opening was taken [m].
     pub(crate) opening_distance: f64,
+    /// Whether the points end where the crack is drawn, rather than midway between rows of particles.
+    pub(crate) follows_line: bool,
 }
 
 impl TipZone {
@@ -53,6 +55,9 @@ impl TipZone {
     /// midway between the rows it parts. Taking places from the drawn line instead gives a K_II of up to 1 % of K_I for
     /// an edge crack of 16 cells in pure tension.
     pub(crate) fn center_on_crack(&mut self, cell_size: f64) {
+        if self.follows_line {
+            return;
+        }
         let near = |p: &&QuadraturePoint| p.place.x.abs() < cell_size && p.place.y.abs() < cell_size;
         let beside = |side: Side| {
             self.points

@@ -112,9 +112,9 @@ impl Colliders {
         let mut fillings = BTreeMap::<usize, Filling>::new();
         let mut reader = lattice.reader();
         for p in particles {
-            reader.for_each_entry(p, |field, w, g| {
+            reader.for_each_part(p, |field, share, w, g| {
                 if near.contains(lattice.position(field)) {
-                    fillings.entry(field).or_default().add(p, lattice.particles.volume[p], w, g);
+                    fillings.entry(field).or_default().add(p, share * lattice.particles.volume[p], w, g);
                 }
             });
         }
@@ -169,7 +169,9 @@ fn surface_nodes(lattice: &Lattice) -> Vec<SurfaceNode> {
     let mut fillings = vec![Filling::default(); lattice.field_count()];
     let mut reader = lattice.reader();
     for p in 0..lattice.particles.len() {
-        reader.for_each_entry(p, |field, w, g| fillings[field].add(p, lattice.particles.volume[p], w, g));
+        reader.for_each_part(p, |field, share, w, g| {
+            fillings[field].add(p, share * lattice.particles.volume[p], w, g);
+        });
     }
     let fields = fillings.iter().zip(lattice.places_of_fields()).enumerate();
     let of = |(field, (filling, place)): (usize, (&Filling, [i32; 2]))| {

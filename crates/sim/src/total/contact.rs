@@ -1,12 +1,23 @@
-//! Contact between the two faces of a crack, at nodes that have fields on both sides of it.
+//! Contact between the two faces of a crack, at points of the crack itself.
 //!
 //! Nairn 2003, Guo & Nairn 2006 (thesis eq. 7–10): fields that overlap, (u_a − u_b)·n < 0 with n from below to above,
 //! and approach, (v_a − v_b)·n < 0, get the normal velocity of their centre of mass. Friction after Coulomb: the
 //! tangential impulse is at most μ times the normal one; an infinite μ sticks.
 //!
-//! As published, this lets faces that meet overlap by the way they go in one step, and stay so; faces that slide along
+//! As published, fields are held apart at their nodes, which lie up to a cell beside the crack. There they differ by
+//! more than the faces do: a crack in pure shear, whose faces slide along each other without pressure, is stretched
+//! along one face and shortened along the other, so that the fields of its nodes overlap on one side. Here what the
+//! fields say is taken to the foot of each node on the crack, u_a − u_b there being Σ N_i (u_a − u_b)_i, and an impulse
+//! there goes to the fields by the same weights.
+//!
+//! Points near each other share fields. In each round all of them see the same velocities, and each has its part of the
+//! mass of a field that it shares, so that none comes before another and mirrored scenes stay so (Tonge, Benevolenski &
+//! Voroshilov 2012). They begin with the impulses of the step before; without that what is pressed together would sink
+//! a little in every step.
+//!
+//! As published, too, faces that meet overlap by the way they go in one step, and stay so; faces that slide along
 //! each other overlap a little more with every step, and less and less pressure is passed on near a tip. Here two
-//! fields may approach in a step by as much as the gap between them, so that faces meet and never overlap.
+//! faces may approach in a step by as much as the gap between them, so that faces meet and never overlap.
 
 use super::lattice::Lattice;
 use super::motion::Motion;
@@ -14,184 +25,421 @@ use super::near::Near;
 use super::probes::Probes;
 use crate::contact::neighbours::TOGETHER;
 use crate::crack::Crack;
-use crate::crack::contact::face_impulse;
 use crate::crack::cracks::{Cracks, Stretch};
+use crate::saved::{self, Fits};
 use fissure_plane::{Point, Vector};
 
-/// Rounds in which the pairs of a node that has several take what the others have done into account.
-const ROUNDS: usize = 8;
+/// Rounds through all points in a step, at most.
+const ROUNDS: usize = 32;
+/// No more rounds are needed when no impulse changes by more than this part of the largest.
+const CONVERGED: f64 = 1e-5;
 
 /// Two fields of one node on the two sides of one crack.
 #[derive(Debug, Clone, Copy)]
-struct FacePair {
+struct FacingFields {
     above: u32,
     below: u32,
-    /// Their node.
+    /// What they weigh at the point [–].
+    weight: f64,
+}
+
+/// A point of a crack at which its faces may meet.
+#[derive(Debug)]
+struct MeetingPoint {
+    /// The node whose foot it is.
     node: u32,
     crack: u32,
-    /// Segment of the crack nearest to the node.
     segment: u32,
-    /// Force on the field above in the last step, per unit thickness [N/m].
-    force: [f64; 2],
+    /// At rest [m].
+    place: Point,
+    fields: Box<[FacingFields]>,
+    /// Force on the face above in the last step, per unit thickness [N/m].
+    force: Vector,
 }
 
-/// All pairs of fields that face each other across one crack, in the order of their nodes.
+/// All points at which the faces of cracks may meet, in the order of their nodes.
 #[derive(Debug)]
 pub(super) struct Contacts {
-    pairs: Vec<FacePair>,
+    points: Vec<MeetingPoint>,
     /// Coefficient of friction; none where faces pass through each other.
     friction: Option<f64>,
-    /// Fields that have slid farther than this along each other have parted [m].
+    /// Faces that have slid farther than this along each other have parted [m].
     longest_slide: f64,
+    /// Of each field, the points that act on it in a round; zero between rounds.
+    sharing: Vec<u32>,
+    /// Of each field, whether a point has pushed it in this step; none has between steps.
+    pushed: Vec<bool>,
 }
 
+/// What faces at a point do in a step.
+#[derive(Debug, Clone, Copy)]
+struct Meeting {
+    point: usize,
+    /// Unit vector from below to above.
+    normal: Vector,
+    /// Speed along the normal that is allowed; negative when the faces may still approach [m/s].
+    allowed: f64,
+    /// Along the normal and to the left of it, on the face above, per unit thickness [N s/m].
+    impulse: [f64; 2],
+    /// Whether the faces approach each other by more than is allowed, or have pressed on each other in the step before.
+    is_pressed: bool,
+}
+
+/// Forces between faces: the number of a point and the force on the face above [N/m].
+pub(super) type FaceForces = Vec<(u32, [f64; 2])>;
+
 impl Contacts {
-    /// The pairs of `lattice`. `friction`: coefficient of friction; none where faces pass through each other.
+    /// The points of `lattice`. `friction`: coefficient of friction; none where faces pass through each other.
     pub(super) fn new(friction: Option<f64>, lattice: &Lattice, cracks: &Cracks) -> Self {
         let forks = cracks.forks();
-        let mut pairs = Vec::new();
+        let mut points = Vec::new();
         for node in lattice.fields().divided_nodes() {
-            add_pairs_of_node(lattice, node, cracks, &forks, &mut pairs);
+            add_points_of_node(lattice, node, cracks, &forks, &mut points);
         }
-        Self { pairs, friction, longest_slide: TOGETHER * lattice.grid.cell_size }
+        Self {
+            points,
+            friction,
+            longest_slide: TOGETHER * lattice.grid.cell_size,
+            sharing: Vec::new(),
+            pushed: Vec::new(),
+        }
+    }
+
+    /// Checks forces that were read, and goes on from them.
+    ///
+    /// # Errors
+    /// [`SimulationError::BadState`](crate::SimulationError::BadState)
+    pub(super) fn set_forces(&mut self, forces: &FaceForces) -> Fits {
+        saved::below("a force between faces", forces.iter().map(|f| f.0), self.points.len())?;
+        saved::finite("a force between faces", forces.iter().flat_map(|f| &f.1))?;
+        for &(point, force) in forces {
+            self.points[point as usize].force = force.into();
+        }
+        Ok(())
+    }
+
+    /// The forces of the last step.
+    pub(super) fn all_forces(&self) -> FaceForces {
+        let pressed = self.points.iter().enumerate().filter(|(_, point)| point.force != Vector::zeros());
+        pressed.map(|(index, point)| (index as u32, point.force.into())).collect()
     }
 
     /// Whether faces can press on each other.
     pub(super) fn are_possible(&self) -> bool {
-        self.friction.is_some() && !self.pairs.is_empty()
+        self.friction.is_some() && !self.points.is_empty()
     }
 
-    /// The same after a change: nodes elsewhere have the pairs they had.
+    /// The same after a change: nodes elsewhere have the points they had.
     pub(super) fn refresh(&mut self, near: &Near, lattice: &Lattice, cracks: &Cracks) {
-        let node_of = |pair: &FacePair| pair.node as usize;
         let forks = cracks.forks();
-        let mut pairs = Vec::with_capacity(self.pairs.len() + 32);
-        let mut before = self.pairs.as_slice();
+        // A point sees nodes of the same stencil, so that what has changed there changes it.
+        let reach = (lattice.reach() + 1.0) * lattice.grid.cell_size;
+        let mut points = Vec::with_capacity(self.points.len() + 32);
+        let mut before = std::mem::take(&mut self.points).into_iter().peekable();
         for node in lattice.fields().divided_nodes() {
-            let skipped = before.partition_point(|pair| node_of(pair) < node);
-            let (own, rest) = before[skipped..].split_at(before[skipped..].partition_point(|p| node_of(p) == node));
-            before = rest;
-            if near.contains(lattice.grid.position(node)) {
-                let first = pairs.len();
-                add_pairs_of_node(lattice, node, cracks, &forks, &mut pairs);
+            while before.next_if(|point| (point.node as usize) < node).is_some() {}
+            let own = std::iter::from_fn(|| before.next_if(|point| point.node as usize == node));
+            if near.is_within(lattice.grid.position(node), reach) {
+                let first = points.len();
+                add_points_of_node(lattice, node, cracks, &forks, &mut points);
                 // What the faces did to each other in this step they did, however the node is divided now: tips may be
                 // measured again before the next.
                 for before in own {
-                    if let Some(now) = pairs[first..].iter_mut().find(|p| p.crack == before.crack) {
-                        (0..2).for_each(|axis| now.force[axis] += before.force[axis]);
+                    if let Some(now) = points[first..].iter_mut().find(|point| point.crack == before.crack) {
+                        now.force += before.force;
                     }
                 }
             } else {
-                let now = |p: &FacePair| FacePair { segment: near.segment_now(p.crack, p.segment), ..*p };
-                pairs.extend(own.iter().map(now));
+                let now = |point: MeetingPoint| {
+                    let segment = near.segment_now(point.crack, point.segment);
+                    MeetingPoint { segment, ..point }
+                };
+                points.extend(own.map(now));
             }
         }
-        self.pairs = pairs;
+        self.points = points;
     }
 
-    /// The least and the widest gap of all pairs along their normals [m].
+    /// The least and the widest gap of all points along their normals [m].
     #[cfg(test)]
     pub(super) fn least_and_widest_gap(&self, probes: &Probes, motion: &Motion) -> [f64; 2] {
-        let along =
-            |pair: &FacePair| probes.segment_normal(pair.crack, pair.segment, motion).map(|n| pair.gap(motion).dot(&n));
-        let gaps = self.pairs.iter().filter_map(along);
+        let along = |point: &MeetingPoint| {
+            probes.segment_normal(point.crack, point.segment, motion).map(|n| point.gap(motion).dot(&n))
+        };
+        let gaps = self.points.iter().filter_map(along);
         gaps.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, widest], gap| [least.min(gap), widest.max(gap)])
     }
 
-    /// Forgets the forces of the step before.
-    pub(super) fn forget_forces(&mut self) {
-        self.pairs.iter_mut().for_each(|pair| pair.force = [0.0; 2]);
-    }
-
-    /// Applies contact to all pairs: impulses within the time `kick` [s].
+    /// Applies contact at all points: impulses within the time `kick` [s], beginning with those of the step before.
     pub(super) fn resolve(&mut self, mass: &[f64], probes: &Probes, motion: &mut Motion, kick: f64, time_step: f64) {
         let Some(friction) = self.friction else { return };
-        let longest_slide = self.longest_slide;
-        let mut meeting: Vec<(usize, Vector, f64)> = Vec::new();
-        for pairs in self.pairs.chunk_by_mut(|p, q| p.node == q.node) {
-            meeting.clear();
-            for (k, pair) in pairs.iter().enumerate() {
-                let gap = pair.gap(motion);
-                if gap == Vector::zeros() && pair.speed(motion) == Vector::zeros() {
-                    continue;
-                }
-                let Some(n) = probes.segment_normal(pair.crack, pair.segment, motion) else { continue };
-                // Faces that have slid apart touch others than they faced at rest.
-                if (gap - n * gap.dot(&n)).norm() > longest_slide {
-                    continue;
-                }
-                // What is left of the gap may be used up in this step; faces that overlap stay as they are.
-                meeting.push((k, n, -gap.dot(&n).max(0.0) / time_step));
+        let mut meetings = self.meetings(probes, motion, kick, time_step);
+        for meeting in &mut meetings {
+            let limit = friction_limit(friction, meeting.impulse[0]);
+            meeting.impulse[1] = meeting.impulse[1].clamp(-limit, limit);
+            if meeting.impulse[0] > 0.0 {
+                self.push(meeting.point, meeting.whole(), mass, motion);
             }
-            let rounds = if meeting.len() > 1 { ROUNDS } else { 1 };
-            for _ in 0..rounds {
-                // All see the same velocities, and each has its part of the mass of a field that it shares: none comes
-                // before another, and together they do no more than they may.
-                let part = |field: u32| {
-                    let sharing = meeting.iter().filter(|m| pairs[m.0].above == field || pairs[m.0].below == field);
-                    mass[field as usize] / sharing.count() as f64
-                };
-                let impulse_of = |&(k, n, allowed): &(usize, Vector, f64)| {
-                    let pair = &pairs[k];
-                    let masses = [part(pair.above), part(pair.below)];
-                    Some((k, face_impulse(pair.speed(motion), n, allowed, masses, friction)?))
-                };
-                let impulses: Vec<(usize, Vector)> = meeting.iter().filter_map(impulse_of).collect();
-                for (k, impulse) in impulses {
-                    let pair = &mut pairs[k];
-                    let (a, b) = (pair.above as usize, pair.below as usize);
-                    for axis in 0..2 {
-                        pair.force[axis] += impulse[axis] / kick;
-                        motion.velocity[axis][a] += impulse[axis] / mass[a];
-                        motion.velocity[axis][b] -= impulse[axis] / mass[b];
-                    }
-                }
+        }
+        self.relax(meetings, friction, mass, motion, kick);
+    }
+
+    /// Goes on with the impulses of [`Contacts::resolve`] after velocities have changed.
+    pub(super) fn resolve_again(
+        &mut self,
+        mass: &[f64],
+        probes: &Probes,
+        motion: &mut Motion,
+        kick: f64,
+        time_step: f64,
+    ) {
+        let Some(friction) = self.friction else { return };
+        let meetings = self.meetings(probes, motion, kick, time_step);
+        self.relax(meetings, friction, mass, motion, kick);
+    }
+
+    /// Goes through all meetings until none approaches more than it may, or often enough; keeps their forces.
+    fn relax(&mut self, mut meetings: Vec<Meeting>, friction: f64, mass: &[f64], motion: &mut Motion, kick: f64) {
+        // All others stay as they are until one that shares a field with them is pushed.
+        let mut candidates = self.candidates(&meetings, mass.len());
+        for _ in 0..ROUNDS {
+            let acts = |&k: &usize| {
+                let meeting = &meetings[k];
+                meeting.impulse[0] > 0.0
+                    || self.points[meeting.point].speed(motion).dot(&meeting.normal) < meeting.allowed
+            };
+            let acting: Vec<usize> = candidates.iter().copied().filter(acts).collect();
+            if acting.is_empty() {
+                break;
             }
+            self.share_fields(acting.iter().map(|&k| meetings[k].point), mass.len());
+            let changes: Vec<[f64; 2]> =
+                acting.iter().map(|&k| self.change(&meetings[k], friction, mass, motion)).collect();
+            self.forget_shares(acting.iter().map(|&k| meetings[k].point));
+            let (mut change, mut largest, mut spreads) = (0.0_f64, 0.0_f64, false);
+            for (&k, changed) in acting.iter().zip(changes) {
+                let meeting = &mut meetings[k];
+                let before = std::mem::replace(&mut meeting.impulse, changed);
+                let by = [changed[0] - before[0], changed[1] - before[1]];
+                let (point, impulse) = (meeting.point, Meeting { impulse: by, ..*meeting }.whole());
+                spreads |= self.push(point, impulse, mass, motion);
+                change = change.max(by[0].abs()).max(by[1].abs());
+                largest = largest.max(changed[0]);
+            }
+            if change <= CONVERGED * largest {
+                break;
+            }
+            if spreads {
+                candidates = self.candidates(&meetings, mass.len());
+            }
+        }
+        self.pushed.fill(false);
+        self.points.iter_mut().for_each(|point| point.force = Vector::zeros());
+        for meeting in &meetings {
+            let point = &mut self.points[meeting.point];
+            point.force = meeting.whole() * (point.total_weight() / kick);
+        }
+    }
+
+    /// The meetings in which something may happen, of so many `fields`.
+    fn candidates(&mut self, meetings: &[Meeting], fields: usize) -> Vec<usize> {
+        self.pushed.resize(fields, false);
+        let is_pushed = |pair: &FacingFields| self.pushed[pair.above as usize] || self.pushed[pair.below as usize];
+        let may_act = |meeting: &Meeting| meeting.is_pressed || self.points[meeting.point].fields.iter().any(is_pushed);
+        (0..meetings.len()).filter(|&k| may_act(&meetings[k])).collect()
+    }
+
+    /// Gives an impulse to the face above a point and takes it from the face below. Whether that moves a field that
+    /// nothing has pushed before in this step.
+    fn push(&mut self, point: usize, impulse: Vector, mass: &[f64], motion: &mut Motion) -> bool {
+        self.pushed.resize(mass.len(), false);
+        self.points[point].push(impulse, mass, motion);
+        let fields = self.points[point].fields.iter().flat_map(|pair| [pair.above, pair.below]);
+        let mut is_new = false;
+        for field in fields {
+            is_new |= !std::mem::replace(&mut self.pushed[field as usize], true);
+        }
+        is_new
+    }
+
+    /// The impulse that a meeting would like, with the velocities as they are and its part of the masses.
+    fn change(&self, meeting: &Meeting, friction: f64, mass: &[f64], motion: &Motion) -> [f64; 2] {
+        let point = &self.points[meeting.point];
+        let speed = point.speed(motion);
+        let reduced = point.reduced_mass(|field| mass[field] / f64::from(self.sharing[field]));
+        let [normal, tangential] = meeting.impulse;
+        let normal = (normal + (meeting.allowed - speed.dot(&meeting.normal)) * reduced).max(0.0);
+        let limit = friction_limit(friction, normal);
+        let tangential = (tangential - speed.dot(&left_of(meeting.normal)) * reduced).clamp(-limit, limit);
+        [normal, tangential]
+    }
+
+    /// The points whose faces could meet in a step, with what they did in the step before.
+    fn meetings(&self, probes: &Probes, motion: &Motion, kick: f64, time_step: f64) -> Vec<Meeting> {
+        let meeting = |(index, point): (usize, &MeetingPoint)| {
+            let (gap, speed) = (point.gap(motion), point.speed(motion));
+            if gap == Vector::zeros() && speed == Vector::zeros() {
+                return None;
+            }
+            let normal = probes.segment_normal(point.crack, point.segment, motion)?;
+            // Faces that have slid apart touch others than they faced at rest.
+            if (gap - normal * gap.dot(&normal)).norm() > self.longest_slide * point.total_weight() {
+                return None;
+            }
+            let before = point.force * (kick / point.total_weight());
+            let impulse = [before.dot(&normal).max(0.0), before.dot(&left_of(normal))];
+            // What is left of the gap may be used up in this step; faces that overlap stay as they are.
+            let allowed = -gap.dot(&normal).max(0.0) / time_step;
+            let is_pressed = impulse[0] > 0.0 || speed.dot(&normal) < allowed;
+            Some(Meeting { point: index, normal, allowed, impulse, is_pressed })
+        };
+        self.points.iter().enumerate().filter_map(meeting).collect()
+    }
+
+    /// Counts, of each of so many `fields`, the points that act on it.
+    fn share_fields(&mut self, points: impl Iterator<Item = usize>, fields: usize) {
+        self.sharing.resize(fields, 0);
+        for pair in points.flat_map(|point| &self.points[point].fields) {
+            self.sharing[pair.above as usize] += 1;
+            self.sharing[pair.below as usize] += 1;
+        }
+    }
+
+    /// Sets back what [`Contacts::share_fields`] has counted.
+    fn forget_shares(&mut self, points: impl Iterator<Item = usize>) {
+        for pair in points.flat_map(|point| &self.points[point].fields) {
+            self.sharing[pair.above as usize] = 0;
+            self.sharing[pair.below as usize] = 0;
         }
     }
 
     /// The forces of the last step between the faces of a crack along a stretch of it: place at rest [m] and force on
     /// the face above [N/m].
-    pub(super) fn forces(&self, stretch: Stretch, lattice: &Lattice) -> impl Iterator<Item = (Point, Vector)> {
-        let is_on = move |p: &FacePair| p.crack as usize == stretch.crack && stretch.has_segment(p.segment as usize);
-        let pressed = self.pairs.iter().filter(move |p| is_on(p) && p.force != [0.0; 2]);
-        pressed.map(|p| (lattice.position(p.above as usize), Vector::from(p.force)))
+    pub(super) fn forces(&self, stretch: Stretch) -> impl Iterator<Item = (Point, Vector)> {
+        let is_on =
+            move |p: &&MeetingPoint| p.crack as usize == stretch.crack && stretch.has_segment(p.segment as usize);
+        let pressed = self.points.iter().filter(is_on).filter(|p| p.force != Vector::zeros());
+        pressed.map(|p| (p.place, p.force))
     }
 }
 
-impl FacePair {
+impl Meeting {
+    /// Its impulse on the face above [N s/m].
+    fn whole(&self) -> Vector {
+        self.normal * self.impulse[0] + left_of(self.normal) * self.impulse[1]
+    }
+}
+
+impl MeetingPoint {
     /// Displacement of the face above less that of the face below [m].
     fn gap(&self, motion: &Motion) -> Vector {
-        motion.displacement(self.above as usize) - motion.displacement(self.below as usize)
+        let apart =
+            |pair: &FacingFields| motion.displacement(pair.above as usize) - motion.displacement(pair.below as usize);
+        self.fields.iter().map(|pair| apart(pair) * pair.weight).sum()
     }
 
     /// Velocity of the face above less that of the face below [m/s].
     fn speed(&self, motion: &Motion) -> Vector {
-        motion.velocity(self.above as usize) - motion.velocity(self.below as usize)
+        let apart = |pair: &FacingFields| motion.velocity(pair.above as usize) - motion.velocity(pair.below as usize);
+        self.fields.iter().map(|pair| apart(pair) * pair.weight).sum()
+    }
+
+    /// What the fields weigh together [–]: less than one where some nodes around have no fields on both sides.
+    fn total_weight(&self) -> f64 {
+        self.fields.iter().map(|pair| pair.weight).sum()
+    }
+
+    /// What an impulse on one face, and against it on the other, has to move [kg/m]; `mass_of`: mass of a field.
+    fn reduced_mass(&self, mass_of: impl Fn(usize) -> f64) -> f64 {
+        let of_side = |field: u32| 1.0 / mass_of(field as usize);
+        let mobility = |pair: &FacingFields| pair.weight * pair.weight * (of_side(pair.above) + of_side(pair.below));
+        1.0 / self.fields.iter().map(mobility).sum::<f64>()
+    }
+
+    /// Gives an impulse to the face above and takes it from the face below.
+    fn push(&self, impulse: Vector, mass: &[f64], motion: &mut Motion) {
+        for pair in &self.fields {
+            let (above, below) = (pair.above as usize, pair.below as usize);
+            for axis in 0..2 {
+                motion.velocity[axis][above] += impulse[axis] * pair.weight / mass[above];
+                motion.velocity[axis][below] -= impulse[axis] * pair.weight / mass[below];
+            }
+        }
     }
 }
 
-fn add_pairs_of_node(
+/// The largest tangential impulse; not 0 · ∞ for a friction without bound.
+fn friction_limit(friction: f64, normal: f64) -> f64 {
+    if normal > 0.0 { friction * normal } else { 0.0 }
+}
+
+fn left_of(normal: Vector) -> Vector {
+    Vector::new(-normal.y, normal.x)
+}
+
+fn add_points_of_node(
     lattice: &Lattice,
     node: usize,
     cracks: &Cracks,
     forks: &[(Point, Stretch)],
-    pairs: &mut Vec<FacePair>,
+    points: &mut Vec<MeetingPoint>,
 ) {
     let place = lattice.grid.position(node);
-    for facing in lattice.fields().facing_pairs(&lattice.fields_with_mass(node)) {
-        let Some(line) = cracks.get(facing.crack as usize) else { continue };
-        let [above, below] = facing.above_and_below();
+    let facing: Vec<_> = lattice.fields().facing_pairs(&lattice.fields_with_mass(node)).collect();
+    for pair in &facing {
+        let crack = pair.crack;
+        let Some(line) = cracks.get(crack as usize) else { continue };
         // Around a fork the two sides of the trunk differ by both its branches: what differs by one faces across that.
         let is_of_trunk = |segment: &usize| {
             let is_near = |at: Point| (place - at).amax() <= lattice.division.around_fork();
-            forks
-                .iter()
-                .any(|(at, trunk)| trunk.crack == facing.crack as usize && trunk.has_segment(*segment) && is_near(*at))
+            forks.iter().any(|(at, trunk)| trunk.crack == crack as usize && trunk.has_segment(*segment) && is_near(*at))
         };
-        let segment = nearest_segment(lattice, facing.crack, line, place, |segment| !is_of_trunk(segment)) as u32;
-        pairs.push(FacePair { above, below, node: node as u32, crack: facing.crack, segment, force: [0.0; 2] });
+        let segment = nearest_segment(lattice, crack, line, place, |segment| !is_of_trunk(segment));
+        let foot = foot_on(line, segment, place);
+        // Where a node has several pairs across one crack, none of those around it is known to be the same faces.
+        let is_alone = facing.iter().filter(|other| other.crack == crack).count() == 1;
+        let around = if is_alone { facing_fields_at(lattice, crack, foot) } else { Vec::new() };
+        let [above, below] = pair.above_and_below();
+        let sees_own = around.iter().any(|other| (other.above, other.below) == (above, below));
+        let fields = if sees_own { around } else { vec![FacingFields { above, below, weight: 1.0 }] };
+        points.push(MeetingPoint {
+            node: node as u32,
+            crack,
+            segment: segment as u32,
+            place: foot,
+            fields: fields.into(),
+            force: Vector::zeros(),
+        });
     }
+}
+
+/// Where the way from `place` meets a segment of a crack at a right angle; beyond the ends of the crack as if it went
+/// straight on.
+fn foot_on(line: &Crack, segment: usize, place: Point) -> Point {
+    let (a, b) = (line.points[segment], line.points[segment + 1]);
+    let along = (place - a).dot(&(b - a)) / (b - a).norm_squared();
+    let least = if segment == 0 { f64::NEG_INFINITY } else { 0.0 };
+    let most = if segment + 2 == line.points.len() { f64::INFINITY } else { 1.0 };
+    a + (b - a) * along.clamp(least, most)
+}
+
+/// The fields that face each other across a crack around a `place` on it, with their weights there; nodes where several
+/// pairs do have no part.
+fn facing_fields_at(lattice: &Lattice, crack: u32, place: Point) -> Vec<FacingFields> {
+    let stencil = lattice.stencil(place);
+    let nodes = lattice.grid.stencil(&stencil);
+    let mut fields = Vec::with_capacity(4);
+    for (b, a) in (0..stencil.width).flat_map(|b| (0..stencil.width).map(move |a| (b, a))) {
+        let weight = stencil.weight(a, b);
+        let Some(node) = nodes.at(a, b).filter(|_| weight > 0.0) else { continue };
+        let with_mass = lattice.fields_with_mass(node);
+        let mut pairs = lattice.fields().facing_pairs(&with_mass).filter(|pair| pair.crack == crack);
+        if let (Some(pair), None) = (pairs.next(), pairs.next()) {
+            let [above, below] = pair.above_and_below();
+            fields.push(FacingFields { above, below, weight });
+        }
+    }
+    fields
 }
 
 /// The segment of a crack nearest to `place` of those that count.
@@ -248,12 +496,12 @@ mod tests {
     /// The segment of every pair, and what a look at all segments of the crack finds.
     fn assert_nearest(total: &Total, cracks: &Cracks) {
         let clearly = 1e-9 * total.lattice.grid.cell_size;
-        assert!(!total.contacts.pairs.is_empty());
-        for pair in &total.contacts.pairs {
-            let line = &cracks[pair.crack as usize];
-            let place = total.lattice.position(pair.above as usize);
+        assert!(!total.contacts.points.is_empty());
+        for point in &total.contacts.points {
+            let line = &cracks[point.crack as usize];
+            let place = total.lattice.grid.position(point.node as usize);
             let nearest = nearest_of(0..line.points.len() - 1, line, place, clearly).1;
-            assert_eq!(pair.segment as usize, nearest, "at {place}");
+            assert_eq!(point.segment as usize, nearest, "at {place}");
         }
     }
 
@@ -262,7 +510,7 @@ mod tests {
 
         /// Truth: brute force, over cracks that wind, come back beside themselves and grow.
         #[test]
-        fn pairs_have_the_nearest_segment_of_all(
+        fn points_have_the_nearest_segment_of_all(
             kernel in prop::sample::select(vec![Kernel::Bilinear, Kernel::Gimp, Kernel::Cubic]),
             start in 0.5..3.5_f64,
             turns in prop::collection::vec((-1.2..1.2_f64, 0.02..0.6_f64), 1..40),
@@ -302,11 +550,11 @@ mod tests {
             test_scenes::add_crack(&mut scene, &points);
             let cracks = Cracks::of_scene(&scene);
             let total = Total::new(&scene, Arc::new(Particles::fill(&scene).unwrap()), &cracks).unwrap();
-            let looks = |pair: &FacePair| {
-                let place = total.lattice.position(pair.above as usize);
-                total.lattice.division.segments_around(pair.crack, place).len()
+            let looks = |point: &MeetingPoint| {
+                let place = total.lattice.grid.position(point.node as usize);
+                total.lattice.division.segments_around(point.crack, place).len()
             };
-            total.contacts.pairs.iter().map(looks).max().unwrap()
+            total.contacts.points.iter().map(looks).max().unwrap()
         });
         assert!(most[0] < 40 && most[1] <= most[0] + 2, "{most:?}");
     }

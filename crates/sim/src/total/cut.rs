@@ -6,7 +6,7 @@ use crate::material::elastic::Elastic;
 use crate::particles::Particles;
 use crate::saved::{self, Fits};
 use crate::threads;
-use fissure_plane::Matrix;
+use fissure_plane::{Matrix, Vector};
 use serde::{Deserialize, Serialize};
 
 /// A misfit below this is round-off [–].
@@ -23,12 +23,15 @@ pub(super) struct CutParticles {
     misfit: Vec<[f64; 4]>,
     /// Rows that have one.
     strained: Vec<u32>,
+    /// Of each row, the share of its particle's volume that it stands for and the way from where the particle stands to
+    /// the centre of that [m].
+    parts: Vec<(f64, Vector)>,
 }
 
 impl CutParticles {
     /// None of so many `particles`.
     pub(super) fn new(particles: usize) -> Self {
-        Self { stencils: Entries::new(particles), misfit: Vec::new(), strained: Vec::new() }
+        Self { stencils: Entries::new(particles), misfit: Vec::new(), strained: Vec::new(), parts: Vec::new() }
     }
 
     /// Checks rows that were read against so many `particles` and `fields`.
@@ -40,6 +43,8 @@ impl CutParticles {
         let rows = self.stencils.rows();
         saved::ensure(self.misfit.len() == rows, "the division of its rows")?;
         saved::finite("a row", self.misfit.iter().flatten())?;
+        saved::ensure(self.parts.len() == rows, "the division of its rows")?;
+        saved::finite("a row", self.parts.iter().flat_map(|(share, way)| [share, &way.x, &way.y]))?;
         saved::below("a strained row", self.strained.iter().copied(), rows)
     }
 
@@ -73,7 +78,8 @@ impl CutParticles {
         let Some(row) = self.stencils.row_of(particle) else { return };
         let was_strained = self.misfit[row] != [0.0; 4];
         self.misfit[row] = [misfit.m11, misfit.m12, misfit.m21, misfit.m22];
-        if !was_strained && misfit != Matrix::zeros() {
+        // One that was let go of is in the list until the next step.
+        if !was_strained && misfit != Matrix::zeros() && !self.strained.contains(&(row as u32)) {
             self.strained.push(row as u32);
         }
     }
@@ -89,10 +95,28 @@ impl CutParticles {
         });
     }
 
-    /// Puts new stencils in the place of old ones; particles that had none are added.
+    /// Puts new stencils in the place of old ones; particles that had none are added. Each stands for the whole of its
+    /// particle until [`CutParticles::set_part`] says otherwise.
     pub(super) fn replace(&mut self, stencils: Vec<(usize, Vec<Entry>)>) {
+        let particles: Vec<usize> = stencils.iter().map(|(p, _)| *p).collect();
         self.stencils.replace(stencils);
         self.misfit.resize(self.stencils.rows(), [0.0; 4]);
+        self.parts.resize(self.stencils.rows(), (1.0, Vector::zeros()));
+        for p in particles {
+            self.set_part(p, 1.0, Vector::zeros());
+        }
+    }
+
+    /// Makes the row of a particle stand for a share of its volume, the centre of which is `way` from it [m].
+    pub(super) fn set_part(&mut self, particle: usize, share: f64, way: Vector) {
+        if let Some(row) = self.stencils.row_of(particle) {
+            self.parts[row] = (share, way);
+        }
+    }
+
+    /// What the row of a particle stands for: the share of its volume, and the way to its centre [m].
+    pub(super) fn part_of(&self, particle: usize) -> Option<(f64, Vector)> {
+        self.stencils.row_of(particle).map(|row| self.parts[row])
     }
 
     /// Adds the forces of the particles on the general path, with or without their misfits.
@@ -116,7 +140,7 @@ impl CutParticles {
                 h.m22 += y * e.gradient.y;
             }
             let elastic = &materials[particles.material[p] as usize];
-            crate::first_piola_stress(&h, elastic.mu, elastic.lambda) * particles.volume[p]
+            crate::first_piola_stress(&h, elastic.mu, elastic.lambda) * (particles.volume[p] * self.parts[row].0)
         };
         let [force_x, force_y] = force;
         let mut add = |row: usize, stress: Matrix| {

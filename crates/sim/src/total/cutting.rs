@@ -1,21 +1,90 @@
 //! Cutting the lattice: which cells are whole and go as rows, which particles get stencils of their own, and what those
 //! are.
 
-use super::lattice::Lattice;
+use super::lattice::{Lattice, Layout};
 use super::run::Run;
 use crate::crack::division::CrossedSet;
+use crate::crack::split::Split;
 use crate::grid::entries::Entry;
 use crate::grid::walker::Walker;
+use fissure_plane::{Point, Vector};
+
+/// The parts of a particle on both sides of a crack; the far one has no entries where none runs through it.
+#[derive(Debug)]
+pub(super) struct Parts {
+    pub(super) own: Vec<Entry>,
+    /// Share of the volume that its own side has.
+    pub(super) share: f64,
+    pub(super) own_way: Vector,
+    pub(super) far: Vec<Entry>,
+    pub(super) far_way: Vector,
+}
+
+impl Layout {
+    /// Puts new stencils in the place of old ones.
+    pub(super) fn put(&mut self, parts: Vec<(usize, Parts)>) {
+        let (mut own, mut far, mut split) = (Vec::with_capacity(parts.len()), Vec::new(), Vec::new());
+        for (p, parts) in parts {
+            let is_split = !parts.far.is_empty();
+            if is_split || self.far.entries_of(p).is_some() {
+                far.push((p, parts.far));
+            }
+            split.push((p, parts.share, parts.own_way, parts.far_way));
+            own.push((p, parts.own));
+        }
+        self.cut.replace(own);
+        self.far.replace(far);
+        for (p, share, own_way, far_way) in split {
+            self.cut.set_part(p, share, own_way);
+            self.far.set_part(p, 1.0 - share, far_way);
+        }
+    }
+}
 
 impl Lattice {
-    /// Entries of a particle, cut by the cracks as they are; fields that do not exist yet are made.
-    pub(super) fn make_entries(&mut self, particle: usize) -> Vec<Entry> {
-        let particle = self.layout.riders.host(particle).unwrap_or(particle);
+    /// What a particle sees of the nodes, cut by the cracks as they are; fields that do not exist yet are made.
+    ///
+    /// One that a crack runs through has two parts, each as large as what lies on its side, with the gradient at the
+    /// centre of that. What both weigh stays where the particle stands.
+    pub(super) fn make_parts(&mut self, particle: usize) -> Parts {
+        let host = self.layout.riders.host(particle);
+        let particle = host.unwrap_or(particle);
         let (place, body) = (self.particles.rest[particle], self.particles.body[particle]);
-        let stencil = self.stencil(place);
         // Of what an outline cuts, the mean gradient is that at its centre. Its mass stays where the particle stands,
         // or the nodes beyond a thin rest would be too light for any step.
-        let slopes = match self.particles.off_center(particle) {
+        let off_center = self.particles.off_center(particle);
+        let whole = Vector::zeros();
+        let is_split = self.has_ties()
+            && off_center.is_none()
+            && self.division.is_near(place)
+            && !self.layout.riders.is_undivided(particle);
+        let split = if is_split { self.split(body, place) } else { None };
+        if let Some(Split { share, near, far }) = split {
+            let [near_entries, far_entries] =
+                [near, far].map(|way| self.entries_seen_from(place, place + way, body, Some(way)));
+            // What rides counts to the side of its host.
+            if host.is_some() {
+                return Parts { own: near_entries, share: 1.0, own_way: whole, far: Vec::new(), far_way: whole };
+            }
+            let differ = near_entries.iter().map(|e| e.field).ne(far_entries.iter().map(|e| e.field));
+            if differ {
+                return Parts { own: near_entries, share, own_way: near, far: far_entries, far_way: far };
+            }
+        }
+        let own = self.entries_seen_from(place, place, body, off_center);
+        Parts { own, share: 1.0, own_way: whole, far: Vec::new(), far_way: whole }
+    }
+
+    /// How the one crack that runs through the square of a particle at `place` splits it.
+    fn split(&self, body: u32, place: Point) -> Option<Split> {
+        let half = 0.5 * self.particles.spacing;
+        self.division.split_square(place, half, |crack| self.body_of_crack[crack as usize] == body)
+    }
+
+    /// Entries of what stands at `place` and sees cracks from `from`, with the gradients `way` from `place` on.
+    fn entries_seen_from(&mut self, place: Point, from: Point, body: u32, way: Option<Vector>) -> Vec<Entry> {
+        let stencil = self.stencil(place);
+        let slopes = match way {
             Some(way) => stencil.carried_on(way),
             None => stencil,
         };
@@ -32,7 +101,7 @@ impl Lattice {
                     entries.push(Entry { field: field as u32, weight: w, gradient: g });
                     continue;
                 }
-                for share in self.shares(body, place, nodes.place(a, b)) {
+                for share in self.shares(body, from, nodes.place(a, b)) {
                     let field = self.layout.fields.find_or_add(node, guest, &share.crossed);
                     let gradient = g * share.fraction + share.gradient * w;
                     entries.push(Entry { field: field as u32, weight: w * share.fraction, gradient });
@@ -136,14 +205,14 @@ impl Lattice {
             }
             self.layout.runs[row] = runs;
         }
-        let stencils = stencils.into_iter().map(|p| (p, self.make_entries(p))).collect();
-        self.layout.cut.replace(stencils);
+        let parts: Vec<(usize, Parts)> = stencils.into_iter().map(|p| (p, self.make_parts(p))).collect();
+        self.layout.put(parts);
         self.seat_riders();
         let mut mass = vec![0.0; self.field_count()];
         let mut reader = self.reader();
         for p in 0..self.particles.len() {
             let m = self.particles.mass[p];
-            reader.for_each_entry(p, |field, w, _| mass[field] += m * w);
+            reader.for_each_part(p, |field, share, w, _| mass[field] += m * share * w);
         }
         self.layout.mass = mass;
         self.invert_masses();

@@ -36,7 +36,7 @@ pub(super) struct Lattice {
     /// Nodes that several bodies see.
     pub(super) owners: Owners,
     /// Body of each crack.
-    body_of_crack: Vec<u32>,
+    pub(super) body_of_crack: Vec<u32>,
     /// One over the mass of each field [m/kg]; zero where there is none.
     pub(super) inverse_mass: Vec<f64>,
     kernel: Kernel,
@@ -54,6 +54,8 @@ pub(super) struct Layout {
     pub(super) mass: Vec<f64>,
     /// Particles on the general path with their stencils.
     pub(super) cut: CutParticles,
+    /// What of particles on the general path lies on the other side of a crack than where they stand.
+    pub(super) far: CutParticles,
     /// Runs of uncut cells above each row of nodes.
     pub(super) runs: Vec<Vec<Run>>,
     /// Particles that ride on others: see [`super::riders`].
@@ -85,6 +87,7 @@ impl Lattice {
             fields: Fields::new(grid.len()),
             mass: vec![0.0; grid.len()],
             cut: CutParticles::new(particles.len()),
+            far: CutParticles::new(particles.len()),
             runs: vec![Vec::new(); grid.rows()],
             riders: Riders::default(),
         };
@@ -241,6 +244,7 @@ impl Lattice {
         saved::ensure(layout.mass.len() == fields, "its number of fields")?;
         saved::finite("a field", &layout.mass)?;
         layout.cut.check(self.particles.len(), fields)?;
+        layout.far.check(self.particles.len(), fields)?;
         layout.riders.check(self.particles.len())?;
         saved::ensure(layout.runs.len() == self.grid.rows(), "its number of rows")?;
         for (index, runs) in layout.runs.iter().enumerate() {

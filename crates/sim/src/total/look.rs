@@ -71,31 +71,39 @@ impl Observed for Look<'_> {
         let mut points = Vec::with_capacity(found.len());
         for (p, h) in found {
             let e = lattice.material(p);
-            let arm = particles.rest[p] - tip;
             let into = |m: Matrix| frame * m * frame.transpose();
-            let ParticleRates { displacement, velocity, velocity_gradient, acceleration } = reader.rates(p, motion);
-            let velocity = velocity - acceleration * self.half_step;
-            points.push(QuadraturePoint {
-                place: frame * arm,
-                displacement: frame * (back * displacement + back_minus_one * arm),
-                side: side_of(&around, id.end, ahead, particles.rest[p]),
-                volume: particles.volume[p],
-                stress: into(back * crate::first_piola_stress(&h, e.mu, e.lambda)),
-                gradient: into(back * h + back_minus_one),
-                energy: crate::energy_density(&h, e.mu, e.lambda),
-                density: e.density,
-                velocity: frame * (back * velocity),
-                velocity_slope: frame * (back * (velocity_gradient * ahead)),
-                acceleration: frame * (back * acceleration),
-                material: particles.material[p],
-            });
+            let part = |h: Matrix, rates: ParticleRates, (share, way): (f64, Vector)| {
+                let place = particles.rest[p] + way;
+                let arm = place - tip;
+                let ParticleRates { displacement, velocity, velocity_gradient, acceleration } = rates;
+                let velocity = velocity - acceleration * self.half_step;
+                QuadraturePoint {
+                    place: frame * arm,
+                    displacement: frame * (back * (displacement + h * way) + back_minus_one * arm),
+                    side: side_of(&around, id.end, ahead, place),
+                    volume: particles.volume[p] * share,
+                    stress: into(back * crate::first_piola_stress(&h, e.mu, e.lambda)),
+                    gradient: into(back * h + back_minus_one),
+                    energy: crate::energy_density(&h, e.mu, e.lambda),
+                    density: e.density,
+                    velocity: frame * (back * velocity),
+                    velocity_slope: frame * (back * (velocity_gradient * ahead)),
+                    acceleration: frame * (back * acceleration),
+                    material: particles.material[p],
+                }
+            };
+            let whole = (1.0, Vector::zeros());
+            points.push(part(h, reader.rates(p, motion), lattice.layout.cut.part_of(p).unwrap_or(whole)));
+            if let (Some(h), Some(rates)) = (reader.far_strain(p, &motion.displacement), reader.far_rates(p, motion)) {
+                points.push(part(h, rates, lattice.layout.far.part_of(p).unwrap_or(whole)));
+            }
         }
         let (opening, opening_distance) = self.opening(cracks, id, frame * back);
         let into = frame * back;
         let trail = cracks.trail(id);
         let forces = trail.iter().flat_map(|&stretch| {
             let sign = if stretch.is_backwards() { 1.0 } else { -1.0 };
-            self.contacts.forces(stretch, lattice).map(move |(place, force)| (place, force * sign))
+            self.contacts.forces(stretch).map(move |(place, force)| (place, force * sign))
         });
         let contacts = forces
             // Elsewhere the crack may have come back behind the tip.
@@ -129,7 +137,7 @@ impl Observed for Look<'_> {
             let behind = cracks.behind(id, beyond);
             Bend::new(behind.into_iter().rev().map(|place| Point::from(frame * (place - tip))).collect())
         });
-        TipZone { points, contacts, face_loads, bend, opening, opening_distance }
+        TipZone { points, contacts, face_loads, bend, opening, opening_distance, follows_line: lattice.has_ties() }
     }
 
     fn tip_now(&self, cracks: &Cracks, id: TipId) -> (Point, Vector) {

@@ -50,7 +50,7 @@ use crate::saved;
 use crate::solver::{Continuation, Observed, Release, SlidingTips, Snapshot, Solver, SolverEnergies};
 use crate::tip::zone::TipZone;
 use colliders::Colliders;
-use contact::Contacts;
+use contact::{Contacts, FaceForces};
 use field_vectors::FieldVectors;
 use fissure_plane::{Point, Vector};
 use fissure_scene::{CrackEnd, CrackFrame, OutlineFrame, ParticleFrame, Scene};
@@ -92,7 +92,7 @@ pub(crate) struct Total {
 }
 
 /// What of a solver cannot be laid anew from the scene and the cracks; last the work and the reactions so far.
-type Saved = (Layout, Motion, Probes, Ties, LastImpulses, Done);
+type Saved = (Layout, Motion, Probes, Ties, (LastImpulses, FaceForces), Done);
 
 /// The work done so far, the power of loads and that of gravity, and what each support has done.
 type Done = ([f64; 3], Vec<Reaction>);
@@ -130,7 +130,7 @@ impl Total {
         state: &[u8],
     ) -> Result<Self, SimulationError> {
         let mut lattice = Self::lattice(scene, particles, cracks)?;
-        let (layout, mut motion, probes, ties, impulses, done): Saved = saved::from_bytes(state)?;
+        let (layout, mut motion, probes, ties, (impulses, face_forces), done): Saved = saved::from_bytes(state)?;
         let fields = layout.fields.len();
         lattice.check(&layout, cracks.len())?;
         motion.check(fields)?;
@@ -141,7 +141,9 @@ impl Total {
         Reaction::check(&done.1, scene.supports.len())?;
         motion.resize(fields);
         lattice.set_layout(layout);
-        Self::of_parts(scene, lattice, (motion, probes, ties, impulses, done), cracks)
+        let mut total = Self::of_parts(scene, lattice, (motion, probes, ties, impulses, done), cracks)?;
+        total.contacts.set_forces(&face_forces)?;
+        Ok(total)
     }
 
     fn lattice(scene: &Scene, particles: Arc<Particles>, cracks: &Cracks) -> Result<Lattice, SimulationError> {
@@ -181,12 +183,6 @@ impl Total {
     fn look(&self, half_step: f64) -> Look<'_> {
         let Self { lattice, motion, probes, contacts, loads, .. } = self;
         Look { lattice, motion, probes, contacts, loads, half_step }
-    }
-
-    /// Crack faces that meet.
-    fn resolve_contacts(&mut self, kick: f64, time_step: f64) {
-        let Self { lattice, motion, probes, contacts, .. } = self;
-        contacts.resolve(lattice.mass(), probes, motion, kick, time_step);
     }
 
     /// Surfaces that touch, at the time `middle` [s] of a step. Whether any is near enough.
@@ -229,6 +225,7 @@ impl Total {
     fn settle(&mut self, time_step: f64) {
         let kept = (-time_step / (SETTLING * self.lattice.crossing_time())).exp();
         self.lattice.layout.cut.relax_misfits(kept);
+        self.lattice.layout.far.relax_misfits(kept);
         self.ties.relax(kept);
     }
 
@@ -276,13 +273,14 @@ impl Solver for Total {
         let kick = motion.kick(&lattice.inverse_mass, scene.gravity, self.damping, time_step);
         ties.apply_drag(lattice.mass(), motion, cracks, kick);
         if self.contacts.are_possible() {
-            self.contacts.forget_forces();
-            self.resolve_contacts(kick, time_step);
+            let Self { lattice, motion, probes, contacts, .. } = self;
+            contacts.resolve(lattice.mass(), probes, motion, kick, time_step);
         }
         let touches = self.touch(cracks, middle, kick, time_step);
         self.apply_boundaries(middle, time_step, kick);
         if self.contacts.are_possible() && !self.colliders.is_empty() {
-            self.resolve_contacts(kick, time_step);
+            let Self { lattice, motion, probes, contacts, .. } = self;
+            contacts.resolve_again(lattice.mass(), probes, motion, kick, time_step);
         }
         if touches && !self.colliders.is_empty() {
             self.touching.resolve_again(&mut self.motion);
@@ -412,7 +410,7 @@ impl Snapshot for Total {
             &self.motion,
             &self.probes,
             &self.ties,
-            self.touching.last(),
+            (self.touching.last(), self.contacts.all_forces()),
             ([self.external_work, self.power_of_loads, self.power_of_gravity], &self.reactions),
         );
         saved::to_bytes(&saved)

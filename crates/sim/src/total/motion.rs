@@ -67,9 +67,9 @@ impl Motion {
             if v != Vector::zeros() {
                 any = true;
                 let m = particles.mass[p];
-                reader.for_each_entry(p, |field, w, _| {
-                    momentum[0][field] += m * w * v.x;
-                    momentum[1][field] += m * w * v.y;
+                reader.for_each_part(p, |field, share, w, _| {
+                    momentum[0][field] += m * share * w * v.x;
+                    momentum[1][field] += m * share * w * v.y;
                 });
             }
         }

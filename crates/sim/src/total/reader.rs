@@ -3,6 +3,7 @@
 use super::field_vectors::{FieldVectors, at};
 use super::lattice::Lattice;
 use super::motion::Motion;
+use crate::grid::entries::Entry;
 use crate::grid::walker::Walker;
 use fissure_plane::{Matrix, Vector};
 
@@ -26,7 +27,7 @@ pub(super) struct ParticleMotion {
 }
 
 /// How fast a particle moves.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct ParticleRates {
     /// Displacement [m].
     pub(super) displacement: Vector,
@@ -36,6 +37,16 @@ pub(super) struct ParticleRates {
     pub(super) velocity_gradient: Matrix,
     /// Acceleration [m/s²].
     pub(super) acceleration: Vector,
+}
+
+impl ParticleRates {
+    fn add(&mut self, fields: &Motion, field: usize, w: f64, g: Vector) {
+        let v = fields.velocity(field);
+        self.displacement += fields.displacement(field) * w;
+        self.velocity += v * w;
+        add_outer(&mut self.velocity_gradient, v, g);
+        self.acceleration += fields.acceleration(field) * w;
+    }
 }
 
 impl Lattice {
@@ -71,6 +82,49 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// As [`Reader::for_each_entry`], for both parts of a particle that a crack cuts: (field, share of the volume,
+    /// weight, gradient).
+    #[inline]
+    pub(super) fn for_each_part(&mut self, particle: usize, mut visit: impl FnMut(usize, f64, f64, Vector)) {
+        let share = self.lattice.layout.cut.part_of(particle).map_or(1.0, |part| part.0);
+        self.for_each_entry(particle, |field, w, g| visit(field, share, w, g));
+        if let Some(far) = self.far(particle) {
+            far.for_each(|e| visit(e.field as usize, 1.0 - share, e.weight, e.gradient));
+        }
+    }
+
+    /// The entries of what of a particle lies across a crack, if there is any.
+    fn far(&self, particle: usize) -> Option<impl Iterator<Item = &'a Entry> + use<'a>> {
+        let far = &self.lattice.layout.far;
+        far.part_of(particle).filter(|part| part.0 > 0.0)?;
+        far.entries_of(particle).map(|entries| entries.iter())
+    }
+
+    /// Gradient of a field vector at what of a particle lies across a crack, if there is any.
+    pub(super) fn far_gradient(&self, particle: usize, u: &FieldVectors) -> Option<Matrix> {
+        let mut gradient = Matrix::zeros();
+        self.far(particle)?.for_each(|e| add_outer(&mut gradient, at(u, e.field as usize), e.gradient));
+        Some(gradient)
+    }
+
+    /// Displacement gradient of what of a particle lies across a crack, if there is any.
+    pub(super) fn far_strain(&self, particle: usize, u: &FieldVectors) -> Option<Matrix> {
+        Some(self.far_gradient(particle, u)? + self.lattice.layout.far.misfit_of(particle))
+    }
+
+    /// Displacement gradients of a particle and of what of it lies across a crack; twice the same where nothing does.
+    pub(super) fn strains(&mut self, particle: usize, u: &FieldVectors) -> [Matrix; 2] {
+        let own = self.strain(particle, u);
+        [own, self.far_strain(particle, u).unwrap_or(own)]
+    }
+
+    /// As [`Reader::rates`], of what of a particle lies across a crack, if there is any.
+    pub(super) fn far_rates(&self, particle: usize, fields: &Motion) -> Option<ParticleRates> {
+        let mut rates = ParticleRates::default();
+        self.far(particle)?.for_each(|e| rates.add(fields, e.field as usize, e.weight, e.gradient));
+        Some(rates)
+    }
+
     /// Gradient of a field vector at a particle.
     pub(super) fn gradient(&mut self, particle: usize, u: &FieldVectors) -> Matrix {
         let mut gradient = Matrix::zeros();
@@ -81,6 +135,20 @@ impl<'a> Reader<'a> {
     /// Displacement gradient H = F − I of a particle for the displacement `u`.
     pub(super) fn strain(&mut self, particle: usize, u: &FieldVectors) -> Matrix {
         self.gradient(particle, u) + self.lattice.layout.cut.misfit_of(particle)
+    }
+
+    /// Mean strain energy per volume of a particle [J/m³].
+    pub(super) fn energy_density(&mut self, particle: usize, u: &FieldVectors) -> f64 {
+        let e = self.lattice.material(particle);
+        let density = |h: Matrix| crate::energy_density(&h, e.mu, e.lambda);
+        let own = density(self.strain(particle, u));
+        match self.far_strain(particle, u) {
+            Some(far) => {
+                let share = self.lattice.layout.cut.part_of(particle).map_or(1.0, |part| part.0);
+                share * own + (1.0 - share) * density(far)
+            }
+            None => own,
+        }
     }
 
     /// Displacement, velocity and strain of a particle.
@@ -97,19 +165,8 @@ impl<'a> Reader<'a> {
 
     /// Displacement, velocity, its gradient, and acceleration of a particle.
     pub(super) fn rates(&mut self, particle: usize, fields: &Motion) -> ParticleRates {
-        let mut rates = ParticleRates {
-            displacement: Vector::zeros(),
-            velocity: Vector::zeros(),
-            velocity_gradient: Matrix::zeros(),
-            acceleration: Vector::zeros(),
-        };
-        self.for_each_entry(particle, |field, w, g| {
-            let v = fields.velocity(field);
-            rates.displacement += fields.displacement(field) * w;
-            rates.velocity += v * w;
-            add_outer(&mut rates.velocity_gradient, v, g);
-            rates.acceleration += fields.acceleration(field) * w;
-        });
+        let mut rates = ParticleRates::default();
+        self.for_each_entry(particle, |field, w, g| rates.add(fields, field, w, g));
         rates
     }
 }

@@ -6,7 +6,9 @@
 //! that was there keeps its own. Where a tip divides, what lies between the branches is made of both sides of the
 //! crack; a field of it takes the mean, whether it was there or not, or mirrored branches would differ.
 
-use super::lattice::Lattice;
+use super::cut::CutParticles;
+use super::cutting::Parts;
+use super::lattice::{Lattice, Layout};
 use super::motion::Motion;
 use crate::crack::Crack;
 use crate::crack::cracks::{Cracks, TipId};
@@ -104,47 +106,136 @@ impl Lattice {
         }
         affected.sort_unstable();
         affected.dedup();
+        let mut parts = Vec::with_capacity(affected.len());
         let mut changed = Vec::with_capacity(affected.len());
         let mut changes: Vec<WeightChange> = Vec::new();
         for p in affected {
-            let entries = self.make_entries(p);
+            let of_particle = self.make_parts(p);
             // Where a tip divides, fields that were there move too.
-            if !divides && self.has_kept(p, &entries) {
+            if !divides && self.has_kept(p, &of_particle) {
                 continue;
             }
-            let strain = self.reader().strain(p, &motion.displacement);
-            self.note_changes(p, &entries, &mut changes);
-            changed.push((p, entries, strain));
+            let strains = self.reader().strains(p, &motion.displacement);
+            let kept = self.kept_strains(p, &of_particle, strains);
+            self.note_changes(p, &of_particle, &mut changes);
+            changed.push(p);
+            parts.push((p, of_particle, kept));
         }
+        let before = self.held_by(&changed, motion);
         let lost = self.move_weights(&changes, divides, motion);
-        let strains: Vec<(usize, Matrix)> = changed.iter().map(|&(p, _, strain)| (p, strain)).collect();
-        self.layout.cut.replace(changed.into_iter().map(|(p, entries, _)| (p, entries)).collect());
-        for (p, strain) in strains {
-            let misfit = strain - self.reader().gradient(p, &motion.displacement);
-            // What only sums in another order has not changed.
-            let is_real = misfit.norm() > ROUND_OFF * strain.norm();
-            self.layout.cut.set_misfit(p, if is_real { misfit } else { Matrix::zeros() });
+        self.put_strained(parts, motion);
+        lost + before - self.held_by(&changed, motion)
+    }
+
+    /// Whether a particle has these parts already, and mass in each of their fields: then none of them is new to it.
+    fn has_kept(&self, particle: usize, parts: &Parts) -> bool {
+        let Layout { cut, far, .. } = &self.layout;
+        let has = |rows: &CutParticles, entries: &[Entry], part: (f64, Vector)| {
+            rows.entries_of(particle).unwrap_or_default() == entries
+                && rows.part_of(particle).is_none_or(|now| now == part)
+                && entries.iter().all(|e| e.weight > NO_MASS)
+        };
+        cut.entries_of(particle).is_some()
+            && has(cut, &parts.own, (parts.share, parts.own_way))
+            && has(far, &parts.far, (1.0 - parts.share, parts.far_way))
+    }
+
+    /// Strain energy of `particles` [J/m].
+    pub(super) fn held_by(&self, particles: &[usize], motion: &Motion) -> f64 {
+        let mut reader = self.reader();
+        particles.iter().map(|&p| self.particles.volume[p] * reader.energy_density(p, &motion.displacement)).sum()
+    }
+
+    /// The strains of both parts of a particle after it has been cut anew, from those before: material keeps its
+    /// strain, and what goes from one part to the other takes it along, so that forces stay what they are.
+    pub(super) fn kept_strains(&self, particle: usize, new: &Parts, [mut own, mut far]: [Matrix; 2]) -> [Matrix; 2] {
+        let mut before = self.layout.cut.part_of(particle).map_or(1.0, |part| part.0);
+        if self.has_changed_sides(particle, new) {
+            std::mem::swap(&mut own, &mut far);
+            before = 1.0 - before;
         }
-        lost
+        let gained = new.share - before;
+        if gained > 0.0 {
+            own = (own * before + far * gained) / new.share;
+        } else if new.share < 1.0 {
+            far = (far * (1.0 - before) - own * gained) / (1.0 - new.share);
+        }
+        [own, far]
     }
 
-    /// Whether a particle has these entries already, and mass in each of its fields: then none of them is new to it.
-    fn has_kept(&self, particle: usize, entries: &[Entry]) -> bool {
-        self.layout.cut.entries_of(particle) == Some(entries) && entries.iter().all(|e| e.weight > NO_MASS)
+    /// Puts new stencils in the place of old ones, with strains of both parts that stay what they are, whatever the
+    /// fields have.
+    pub(super) fn put_strained(&mut self, parts: Vec<(usize, Parts, [Matrix; 2])>, motion: &Motion) {
+        let strains: Vec<(usize, [Matrix; 2])> = parts.iter().map(|(p, _, strains)| (*p, *strains)).collect();
+        self.layout.put(parts.into_iter().map(|(p, parts, _)| (p, parts)).collect());
+        // What only sums in another order has not changed.
+        let real = |misfit: Matrix, strain: Matrix| {
+            if misfit.norm() > ROUND_OFF * strain.norm() { misfit } else { Matrix::zeros() }
+        };
+        for (p, [own, far]) in strains {
+            let misfit = own - self.reader().gradient(p, &motion.displacement);
+            let across = self.reader().far_gradient(p, &motion.displacement);
+            self.layout.cut.set_misfit(p, real(misfit, own));
+            self.layout.far.set_misfit(p, across.map_or_else(Matrix::zeros, |now| real(far - now, far)));
+        }
     }
 
-    /// Notes, node by node, how the weights of a particle move between its fields.
-    fn note_changes(&self, particle: usize, new: &[Entry], changes: &mut Vec<WeightChange>) {
-        let mut weights: Vec<(u32, u32, f64)> = Vec::with_capacity(16);
-        let mut add = |field: u32, w: f64| {
-            let node = self.layout.fields.node(field as usize) as u32;
-            match weights.iter_mut().find(|x| x.1 == field) {
-                Some(x) => x.2 += w,
-                None => weights.push((node, field, w)),
+    /// Whether what lies across a crack from a particle is now what was on its side before, as when the crack turns and
+    /// passes it.
+    fn has_changed_sides(&self, particle: usize, new: &Parts) -> bool {
+        let Layout { cut, far, .. } = &self.layout;
+        let is_split = cut.part_of(particle).is_some_and(|part| part.0 < 1.0) && !new.far.is_empty();
+        let (Some(own), Some(far), true) = (cut.entries_of(particle), far.entries_of(particle), is_split) else {
+            return false;
+        };
+        let common = |a: &[Entry], b: &[Entry]| a.iter().filter(|a| b.iter().any(|b| b.field == a.field)).count();
+        common(own, &new.far) + common(far, &new.own) > common(own, &new.own) + common(far, &new.far)
+    }
+
+    /// Notes how the weights of a particle move between its fields: part by part, and what lies across a crack now and
+    /// did not before.
+    pub(super) fn note_changes(&self, particle: usize, new: &Parts, changes: &mut Vec<WeightChange>) {
+        let (mut own, mut far) = (Vec::with_capacity(16), Vec::new());
+        let mut reader = self.reader();
+        reader.for_each_entry(particle, |field, w, _| own.push((field as u32, w)));
+        let mut before = self.layout.cut.part_of(particle).map_or(1.0, |part| part.0);
+        if before < 1.0 {
+            far.extend(self.layout.far.entries_of(particle).into_iter().flatten().map(|e| (e.field, e.weight)));
+        }
+        if self.has_changed_sides(particle, new) {
+            std::mem::swap(&mut own, &mut far);
+            before = 1.0 - before;
+        }
+        let now = |entries: &[Entry]| -> Vec<(u32, f64)> { entries.iter().map(|e| (e.field, e.weight)).collect() };
+        let (own_now, far_now) = (now(&new.own), now(&new.far));
+        let mut note = |from: &[(u32, f64)], to: &[(u32, f64)], share: f64| {
+            if share > 0.0 {
+                self.note_flow(particle, from, to, share, changes);
             }
         };
-        self.reader().for_each_entry(particle, |field, w, _| add(field as u32, -w));
-        new.iter().for_each(|e| add(e.field, e.weight));
+        note(&own, &own_now, before.min(new.share));
+        note(&far, &far_now, 1.0 - before.max(new.share));
+        note(&own, &far_now, before - new.share);
+        note(&far, &own_now, new.share - before);
+    }
+
+    /// Notes, node by node, how a share of the weights of a particle moves from some fields to others.
+    fn note_flow(
+        &self,
+        particle: usize,
+        from: &[(u32, f64)],
+        to: &[(u32, f64)],
+        share: f64,
+        changes: &mut Vec<WeightChange>,
+    ) {
+        let mut weights: Vec<(u32, u32, f64)> = Vec::with_capacity(16);
+        let signed = from.iter().map(|&(field, w)| (field, -(w * share)));
+        for (field, w) in signed.chain(to.iter().map(|&(field, w)| (field, w * share))) {
+            match weights.iter_mut().find(|x| x.1 == field) {
+                Some(x) => x.2 += w,
+                None => weights.push((self.layout.fields.node(field as usize) as u32, field, w)),
+            }
+        }
         weights.sort_unstable_by_key(|x| (x.0, x.1));
         for of_node in weights.chunk_by(|a, b| a.0 == b.0) {
             let moved: Vec<(u32, f64)> = of_node.iter().filter(|x| x.2 != 0.0).map(|x| (x.1, x.2)).collect();

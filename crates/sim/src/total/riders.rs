@@ -3,6 +3,7 @@
 //! What [`crate::loose`] says of corners goes for those as well that a crack makes: a particle that is alone on its
 //! side of the crack in its cell, and shares too few fields with others, flaps without any strain. It rides on the
 //! nearest particle of its side: its volume and its mass count as if they were there, and its own fields are gone.
+//! What of a particle lies across a crack, and flaps there, counts to the particle's own side.
 
 use super::lattice::Lattice;
 use super::motion::Motion;
@@ -21,15 +22,32 @@ const REACH: i32 = 3;
 /// So many cells within what is cut anew all particles are known that share a field with another.
 const MARGIN: f64 = 3.0;
 
-/// Who rides on whom: (rider, host), riders rising.
+/// What has no hold of its own.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub(super) struct Riders(Vec<(u32, u32)>);
+pub(super) struct Riders {
+    /// Who rides on whom: (rider, host), riders rising.
+    hosts: Vec<(u32, u32)>,
+    /// Particles, rising, that are not divided although a crack runs through them.
+    undivided: Vec<u32>,
+}
+
+/// A particle, or what of it lies across a crack.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Part {
+    particle: usize,
+    is_far: bool,
+}
 
 impl Riders {
     /// The particle that another one rides on.
     pub(super) fn host(&self, particle: usize) -> Option<usize> {
-        let found = self.0.binary_search_by_key(&(particle as u32), |&(rider, _)| rider);
-        found.ok().map(|index| self.0[index].1 as usize)
+        let found = self.hosts.binary_search_by_key(&(particle as u32), |&(rider, _)| rider);
+        found.ok().map(|index| self.hosts[index].1 as usize)
+    }
+
+    /// Whether a particle is all on its own side of a crack that runs through it.
+    pub(super) fn is_undivided(&self, particle: usize) -> bool {
+        self.undivided.binary_search(&(particle as u32)).is_ok()
     }
 
     /// Checks what was read against so many `particles`.
@@ -37,9 +55,11 @@ impl Riders {
     /// # Errors
     /// [`SimulationError::BadState`](crate::SimulationError::BadState)
     pub(super) fn check(&self, particles: usize) -> Fits {
-        saved::below("a rider", self.0.iter().flat_map(|&(rider, host)| [rider, host]), particles)?;
-        saved::ensure(self.0.is_sorted_by(|a, b| a.0 < b.0), "the order of its riders")?;
-        saved::ensure(self.0.iter().all(|&(_, host)| self.host(host as usize).is_none()), "a rider")
+        saved::below("a rider", self.hosts.iter().flat_map(|&(rider, host)| [rider, host]), particles)?;
+        saved::below("a particle", self.undivided.iter().copied(), particles)?;
+        let is_sorted = self.hosts.is_sorted_by(|a, b| a.0 < b.0) && self.undivided.is_sorted_by(|a, b| a < b);
+        saved::ensure(is_sorted, "the order of its riders")?;
+        saved::ensure(self.hosts.iter().all(|&(_, host)| self.host(host as usize).is_none()), "a rider")
     }
 }
 
@@ -52,21 +72,37 @@ impl Lattice {
         let mut seen = vec![0_u32; self.field_count()];
         let mut reader = self.reader();
         for p in 0..self.particles.len() {
-            reader.for_each_entry(p, |field, w, _| seen[field] += u32::from(w > 0.0));
+            reader.for_each_part(p, |field, _, w, _| seen[field] += u32::from(w > 0.0));
         }
         // Those that a crack or an outline has given a stencil of their own.
         let near =
             |&p: &usize| self.layout.cut.entries_of(p).is_some() && self.division.is_near(self.particles.rest[p]);
         let loose = self.loose_among((0..self.particles.len()).filter(near).collect(), &mut seen);
-        let riders = loose.iter().filter_map(|&p| Some((p as u32, self.nearest_host(p, &loose)? as u32))).collect();
-        self.layout.riders = Riders(riders);
-        let stencils = loose.into_iter().map(|p| (p, self.make_entries(p))).collect();
-        self.layout.cut.replace(stencils);
+        let (riders, undivided) = self.seats(&loose, &[]);
+        self.layout.riders.hosts = riders.iter().map(|&(p, host)| (p as u32, host as u32)).collect();
+        self.layout.riders.undivided = undivided.iter().map(|&p| p as u32).collect();
+        let moved = riders.into_iter().map(|(p, _)| p).chain(undivided);
+        let parts = moved.map(|p| (p, self.make_parts(p))).collect();
+        self.layout.put(parts);
+    }
+
+    /// Who of the `loose` and the `homeless` rides on whom, and who is not divided.
+    fn seats(&self, loose: &[Part], homeless: &[usize]) -> (Vec<(usize, usize)>, Vec<usize>) {
+        let own: Vec<usize> = loose.iter().filter(|part| !part.is_far).map(|part| part.particle).collect();
+        let far = loose.iter().filter(|part| part.is_far).map(|part| part.particle);
+        let undivided = far.filter(|p| own.binary_search(p).is_err()).collect();
+        let mut all: Vec<usize> = own.iter().chain(homeless).copied().collect();
+        all.sort_unstable();
+        let mut riding: Vec<usize> = self.layout.riders.hosts.iter().map(|&(rider, _)| rider as usize).collect();
+        riding.extend(&all);
+        riding.sort_unstable();
+        let riders = all.iter().filter_map(|&p| Some((p, self.nearest_host(p, &riding)?))).collect();
+        (riders, undivided)
     }
 
     /// Puts the particles on others that a crack leaves without hold which has come to its end, at an outline or at
     /// another crack, within `boxes`; their mass and momentum go along. Those that ride already change where their host
-    /// has got to the other side. Returns the kinetic energy that is lost [J/m].
+    /// has got to the other side. Returns the energy that is lost [J/m].
     pub(super) fn seat_more_riders(&mut self, boxes: &[(Point, Point)], motion: &mut Motion) -> f64 {
         if !self.has_rows() {
             return 0.0;
@@ -77,7 +113,7 @@ impl Lattice {
         let mut seen = vec![0_u32; self.field_count()];
         let mut reader = self.reader();
         for &p in around.iter().filter(|&&p| self.layout.riders.host(p).is_none()) {
-            reader.for_each_entry(p, |field, w, _| seen[field] += u32::from(w > 0.0));
+            reader.for_each_part(p, |field, _, w, _| seen[field] += u32::from(w > 0.0));
         }
         let margin = Vector::repeat(MARGIN * self.grid.cell_size);
         let is_within = |p: Point| boxes.iter().any(|(low, high)| p >= low + margin && p <= high - margin);
@@ -92,42 +128,48 @@ impl Lattice {
         let loses_host = |&p: &usize| {
             let body = self.particles.body[p];
             self.layout.riders.host(p).is_some_and(|host| {
-                loose.binary_search(&host).is_ok()
+                loose.binary_search(&Part { particle: host, is_far: false }).is_ok()
                     || self.is_across(body, self.particles.rest[p], self.particles.rest[host])
             })
         };
-        let moved: Vec<usize> =
-            around.into_iter().filter(|p| loose.binary_search(p).is_ok() || loses_host(p)).collect();
-        self.seat(&moved, motion)
+        let homeless: Vec<usize> = around.into_iter().filter(loses_host).collect();
+        let (hosts, undivided) = self.seats(&loose, &homeless);
+        self.seat(&hosts, &undivided, motion)
     }
 
-    /// Puts particles on others, with their mass and momentum. Returns the kinetic energy that is lost [J/m].
-    fn seat(&mut self, moved: &[usize], motion: &mut Motion) -> f64 {
-        let mut riding: Vec<usize> = self.layout.riders.0.iter().map(|&(rider, _)| rider as usize).collect();
-        riding.extend(moved);
-        riding.sort_unstable();
-        riding.dedup();
-        let hosts: Vec<(usize, usize)> =
-            moved.iter().filter_map(|&p| Some((p, self.nearest_host(p, &riding)?))).collect();
-        if hosts.is_empty() {
+    /// Puts particles on others, (rider, host), and others together on their own side, with their mass and momentum.
+    /// Returns the energy that is lost [J/m].
+    fn seat(&mut self, hosts: &[(usize, usize)], undivided: &[usize], motion: &mut Motion) -> f64 {
+        let moved: Vec<usize> = hosts.iter().map(|&(p, _)| p).chain(undivided.iter().copied()).collect();
+        if moved.is_empty() {
             return 0.0;
         }
+        let riders = &mut self.layout.riders;
+        riders.hosts.retain(|&(rider, _)| hosts.iter().all(|&(p, _)| p != rider as usize));
+        riders.hosts.extend(hosts.iter().map(|&(p, host)| (p as u32, host as u32)));
+        riders.hosts.sort_unstable();
+        riders.undivided.extend(undivided.iter().map(|&p| p as u32));
+        riders.undivided.sort_unstable();
+        riders.undivided.dedup();
+        let before = self.held_by(&moved, motion);
         let mut reader = self.reader();
-        let strains: Vec<Matrix> = hosts.iter().map(|&(p, _)| reader.strain(p, &motion.displacement)).collect();
-        let riders = &mut self.layout.riders.0;
-        riders.retain(|&(rider, _)| hosts.iter().all(|&(p, _)| p != rider as usize));
-        riders.extend(hosts.iter().map(|&(p, host)| (p as u32, host as u32)));
-        riders.sort_unstable();
-        let stencils: Vec<(usize, Vec<Entry>)> = hosts.iter().map(|&(p, _)| (p, self.make_entries(p))).collect();
-        let changes: Vec<WeightChange> = stencils.iter().map(|(p, new)| self.whole_change(*p, new)).collect();
-        let lost = self.move_weights(&changes, false, motion);
-        self.layout.cut.replace(stencils);
-        for (&(p, _), strain) in hosts.iter().zip(strains) {
-            let misfit = strain - self.reader().gradient(p, &motion.displacement);
-            self.layout.cut.set_misfit(p, misfit);
+        let strains: Vec<[Matrix; 2]> = moved.iter().map(|&p| reader.strains(p, &motion.displacement)).collect();
+        let mut changes: Vec<WeightChange> = Vec::new();
+        let mut parts = Vec::with_capacity(moved.len());
+        for (k, (&p, strain)) in moved.iter().zip(&strains).enumerate() {
+            let of_particle = self.make_parts(p);
+            if k < hosts.len() {
+                changes.push(self.whole_change(p, &of_particle.own));
+            } else {
+                self.note_changes(p, &of_particle, &mut changes);
+            }
+            let kept = self.kept_strains(p, &of_particle, *strain);
+            parts.push((p, of_particle, kept));
         }
+        let lost = self.move_weights(&changes, false, motion);
+        self.put_strained(parts, motion);
         self.invert_masses();
-        lost
+        lost + before - self.held_by(&moved, motion)
     }
 
     /// How all weights of a particle move to the fields of `new`, whatever their nodes are.
@@ -137,46 +179,51 @@ impl Lattice {
             Some(x) => x.1 += w,
             None => moved.push((field, w)),
         };
-        self.reader().for_each_entry(particle, |field, w, _| add(field as u32, -w));
+        self.reader().for_each_part(particle, |field, share, w, _| add(field as u32, -w * share));
         new.iter().for_each(|e| add(e.field, e.weight));
         WeightChange { moved, mass: self.particles.mass[particle] }
     }
 
-    /// Those of `left`, rising, that are loose, rising. `seen`: how many particles have each field.
-    fn loose_among(&self, mut left: Vec<usize>, seen: &mut [u32]) -> Vec<usize> {
-        let mut loose: Vec<usize> = Vec::new();
+    /// Parts of `particles` that are loose, rising. `seen`: how many parts of particles have each field.
+    fn loose_among(&self, particles: Vec<usize>, seen: &mut [u32]) -> Vec<Part> {
+        let both = |particle: usize| [false, true].map(|is_far| Part { particle, is_far });
+        let mut left: Vec<Part> =
+            particles.into_iter().flat_map(both).filter(|&part| !self.entries(part).is_empty()).collect();
+        let mut loose: Vec<Part> = Vec::new();
         for _ in 0..ROUNDS {
-            let found: Vec<usize> = left.iter().copied().filter(|&p| self.is_loose(p, seen, &loose)).collect();
+            let found: Vec<Part> = left.iter().copied().filter(|&part| self.is_loose(part, seen, &loose)).collect();
             if found.is_empty() {
                 break;
             }
-            for &p in &found {
-                own_fields(self.entries(p)).for_each(|field| seen[field] -= 1);
+            for &part in &found {
+                own_fields(self.entries(part)).for_each(|field| seen[field] -= 1);
             }
-            left.retain(|p| found.binary_search(p).is_err());
+            left.retain(|part| found.binary_search(part).is_err());
             loose.extend(found);
             loose.sort_unstable();
         }
         loose
     }
 
-    fn entries(&self, particle: usize) -> &[Entry] {
-        self.layout.cut.entries_of(particle).unwrap_or(&[])
+    fn entries(&self, Part { particle, is_far }: Part) -> &[Entry] {
+        let of = if is_far { &self.layout.far } else { &self.layout.cut };
+        of.entries_of(particle).unwrap_or(&[])
     }
 
-    /// Whether a particle and those that share all fields of its cell with it are held by fewer than three fields of
-    /// others if it is alone, by fewer than two if they are several. `seen`: how many particles have each field.
-    fn is_loose(&self, particle: usize, seen: &[u32], loose: &[usize]) -> bool {
-        let fields: Vec<usize> = own_fields(self.entries(particle)).collect();
-        let [i, j] = self.particles.place[particle];
-        let cell = self.grid.cell(self.particles.rest[particle]);
+    /// Whether a part and those that share all fields of its cell with it are held by fewer than three fields of others
+    /// if it is alone, by fewer than two if they are several. `seen`: how many parts have each field.
+    fn is_loose(&self, part: Part, seen: &[u32], loose: &[Part]) -> bool {
+        let fields: Vec<usize> = own_fields(self.entries(part)).collect();
+        let [i, j] = self.particles.place[part.particle];
+        let cell = self.grid.cell(self.particles.rest[part.particle]);
         let beside = self.particles.within([i - 1, j - 1], [i + 1, j + 1]);
-        let is_mate = |&q: &usize| {
-            self.grid.cell(self.particles.rest[q]) == cell
-                && loose.binary_search(&q).is_err()
-                && own_fields(self.entries(q)).eq(fields.iter().copied())
+        let is_mate = |q: &Part| {
+            self.grid.cell(self.particles.rest[q.particle]) == cell
+                && loose.binary_search(q).is_err()
+                && own_fields(self.entries(*q)).eq(fields.iter().copied())
         };
-        let mates = beside.filter(is_mate).count() as u32;
+        let both = |particle: usize| [false, true].map(|is_far| Part { particle, is_far });
+        let mates = beside.flat_map(both).filter(is_mate).count() as u32;
         let shared = fields.iter().filter(|&&field| seen[field] > mates).count();
         shared < if mates > 1 { 2 } else { 3 }
     }
@@ -269,14 +316,14 @@ mod tests {
                     |axis: usize| mass.iter().zip(&total.motion.velocity[axis]).map(|(m, v)| m * v).sum::<f64>();
                 [mass.iter().sum(), along(0), along(1)]
             };
-            let (before, seated) = (sums(&total), total.lattice.layout.riders.0.len());
+            let (before, seated) = (sums(&total), total.lattice.layout.riders.hosts.len());
             let tip = TipId::new(0, End::End);
             let way: Vec<Point> =
                 (1..=16).map(|j| turn * Point::new(3.0 + (width - 3.0) * f64::from(j) / 16.0, 2.7)).collect();
             cracks.grow(tip, &way);
             cracks.set_end(tip, CrackEnd::Mouth);
             total.recut(&cracks, &[tip]);
-            riders += total.lattice.layout.riders.0.len() - seated;
+            riders += total.lattice.layout.riders.hosts.len() - seated;
             assert_eq!(modes_without_strain(&total), 6, "turned by {:.3} rad", turn.angle());
             for (a, b) in before.into_iter().zip(sums(&total)) {
                 assert!((a - b).abs() < 1e-9 * before[0], "turned by {:.3} rad: {a} and {b}", turn.angle());

@@ -158,7 +158,9 @@ impl Lattice {
         };
         let [force_x, force_y] = &mut *force;
         cells.make_forces(0..self.grid.rows(), 0, [&mut force_x[..nodes], &mut force_y[..nodes]]);
-        self.layout.cut.add_forces(&self.particles, &self.materials, u, with_misfits, force);
+        for cut in [&self.layout.cut, &self.layout.far] {
+            cut.add_forces(&self.particles, &self.materials, u, with_misfits, force);
+        }
     }
 }
 

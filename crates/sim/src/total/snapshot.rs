@@ -65,11 +65,7 @@ pub(super) fn kinetic_energy(lattice: &Lattice, ties: &Ties, motion: &Motion) ->
 pub(super) fn strain_energy(lattice: &Lattice, ties: &Ties, motion: &Motion) -> f64 {
     let mut reader = lattice.reader();
     (0..lattice.particles.len())
-        .map(|p| {
-            let e = lattice.material(p);
-            let h = reader.strain(p, &motion.displacement);
-            lattice.particles.volume[p] * crate::energy_density(&h, e.mu, e.lambda)
-        })
+        .map(|p| lattice.particles.volume[p] * reader.energy_density(p, &motion.displacement))
         .sum::<f64>()
         + ties.energy(&motion.displacement)
 }

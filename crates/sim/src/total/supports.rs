@@ -187,7 +187,7 @@ fn body_of_fields(scene: &Scene, lattice: &Lattice) -> Vec<u32> {
     if scene.bodies.len() > 1 {
         let mut reader = lattice.reader();
         for p in 0..lattice.particles.len() {
-            reader.for_each_entry(p, |field, _, _| bodies[field] = lattice.particles.body[p]);
+            reader.for_each_part(p, |field, _, _, _| bodies[field] = lattice.particles.body[p]);
         }
     }
     bodies

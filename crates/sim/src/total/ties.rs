@@ -292,9 +292,9 @@ fn field_stiffness(lattice: &Lattice, field: u32, node: Point) -> f64 {
     for p in lattice.particles.in_box(node - reach, node + reach) {
         let e = lattice.material(p);
         let modulus = e.effective_modulus * lattice.particles.volume[p];
-        reader.for_each_entry(p, |of, _, gradient| {
+        reader.for_each_part(p, |of, share, _, gradient| {
             if of == field as usize {
-                stiffness += modulus * gradient.norm_squared();
+                stiffness += share * modulus * gradient.norm_squared();
             }
         });
     }

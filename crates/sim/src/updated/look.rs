@@ -93,7 +93,15 @@ impl Updated {
         let (opening, opening_distance) = self.faces.cracks[id.crack].opening(id.end, wanted);
         let contacts = self.contacts_around(&axes, radius);
         let face_loads = self.face_loads(&axes, cracks, radius, turned.0);
-        TipZone { points, contacts, face_loads, bend: None, opening: axes.frame * opening, opening_distance }
+        TipZone {
+            points,
+            contacts,
+            face_loads,
+            bend: None,
+            opening: axes.frame * opening,
+            opening_distance,
+            follows_line: false,
+        }
     }
 
     /// A particle with H = `h` in the frame of a tip whose surroundings have `turned` by (R, R − I).

@@ -1,6 +1,6 @@
 //! Edges wherever they lie in a cell: what supports hold and loads pull on is the edge that was drawn.
 
-use crate::common::{YOUNG, plate};
+use crate::common::{YOUNG, add_crack, hold, plate, rectangle};
 use fissure_scene::{Curve, Load, LoadKind, OutlineStretch, Point, Scene, Selection, Support, Vector};
 use fissure_sim::Simulation;
 use std::ops::ControlFlow;
@@ -122,5 +122,29 @@ fn reactions_balance_and_are_the_stress_times_the_width() {
         let off = (a.force - expected).norm() / expected.norm();
         assert!(off < if in_updated { 1.5e-2 } else { 3e-3 }, "{} {expected}", a.force);
         assert!((a.work + b.work - frame.energies.external_work).abs() < 1e-9 * a.work);
+    }
+}
+
+/// Truth: no wave is faster than the fastest. What is pushed below a notch, wherever the notch runs through the squares
+/// of particles, leaves the other face of it at rest until a wave has come around its tip.
+#[test]
+fn a_support_below_a_notch_leaves_the_other_face_at_rest() {
+    for offset in [0.0, 0.1, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.75, 0.9] {
+        let notch = 2.0 + offset * 0.1;
+        let mut scene = plate([3.0, 4.0], 0.1, 8e-4);
+        scene.frames.last = 1;
+        scene.growth.enabled = false;
+        scene.solver.crack_contact = false;
+        add_crack(&mut scene, &[[0.0, notch], [1.5, notch]]);
+        let below = Selection::Region(rectangle([-0.01, -0.01], [0.06, notch - 1e-3]));
+        hold(&mut scene, below, [Some(0.1), None]);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let frame = crate::common::run(&mut simulation, 1).unwrap();
+        let fastest = |is_beside: &dyn Fn(f64) -> bool| {
+            let moving = frame.particles.rest.iter().zip(&frame.particles.velocity);
+            moving.filter(|(p, _)| p.x < 0.4 && is_beside(p.y)).map(|(_, v)| v.norm()).fold(0.0, f64::max)
+        };
+        let (above, below) = (fastest(&|y| y > notch), fastest(&|y| y < notch));
+        assert!(below > 0.05 && above < 1e-3, "{notch}: {above} m/s above, {below} m/s below");
     }
 }

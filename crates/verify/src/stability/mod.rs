@@ -96,7 +96,7 @@ mod tests {
     fn maps_show_what_is_said_of_them() {
         for (name, across, up, low, high) in [
             ("crack-length", 4.0, 0.25, 0.0, 0.012),
-            ("crack-length", 2.0, 0.25, 0.05, 0.2),
+            ("crack-length", 2.0, 0.25, 0.02, 0.2),
             ("ligament", 10.0, 0.5, 0.0, 0.01),
             ("ligament", 2.0, 0.5, 0.05, 0.25),
             ("turn", 30.0, 8.0, 0.0, 0.015),
