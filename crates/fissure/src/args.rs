@@ -4,8 +4,7 @@ use crate::frame_set::FrameSet;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint, value_parser};
 use fissure_preview::SIZES;
-use fissure_scene::{Cut, Format, Part, UpAxis};
-use fissure_sim::Wish;
+use fissure_scene::{Cut, Format, Part, UpAxis, Wish};
 use std::path::PathBuf;
 
 /// Cracked mesh sequences from a drawing.
@@ -147,21 +146,23 @@ pub(crate) struct SceneArguments {
     /// Override one key of the scene file; may be repeated. The value is TOML; a bare word is a string.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
-    /// Choose the particle spacing so that the highest K of each tip is within so much, e.g. 2%.
-    #[arg(long, value_name = "PER CENT", value_parser = parse_accuracy, conflicts_with = "budget")]
-    pub(crate) accuracy: Option<f64>,
-    /// Choose the finest particle spacing that takes no longer than so long, e.g. 30s, 5min, 2h, meshes included.
-    #[arg(long, value_name = "TIME", value_parser = parse_time)]
-    pub(crate) budget: Option<f64>,
+    /// Choose the particle spacing so that the highest K of each tip is within so much, e.g. 2%; before what the scene
+    /// says.
+    #[arg(long, value_name = "PER CENT", value_parser = Wish::accuracy, conflicts_with = "budget")]
+    pub(crate) accuracy: Option<Wish>,
+    /// Choose the finest particle spacing that takes no longer than so long, e.g. 30s, 5min, 2h, meshes included;
+    /// before what the scene says.
+    #[arg(long, value_name = "TIME", value_parser = Wish::budget)]
+    pub(crate) budget: Option<Wish>,
     /// Fail when there are warnings, before anything is computed.
     #[arg(long)]
     pub(crate) strict: bool,
 }
 
 impl SceneArguments {
-    /// What is wanted of the resolution, if anything is.
+    /// What is wanted of the resolution on the command line, if anything is.
     pub(crate) fn wish(&self) -> Option<Wish> {
-        self.accuracy.map(Wish::Accuracy).or(self.budget.map(Wish::Budget))
+        self.accuracy.or(self.budget)
     }
 }
 
@@ -508,31 +509,11 @@ enum NumberError {
     TurnOutOfRange,
     #[error("the ratio must be 1.2 to 4")]
     RatioOutOfRange,
-    #[error("write per cents, such as 2%: above 0% and below 100%")]
-    NoPerCent,
-    #[error("write a time such as 30s, 5min or 2h, above 0")]
-    NoTime,
 }
 
 fn parse_length(word: &str) -> Result<f64, NumberError> {
     let value: f64 = word.parse().map_err(|_| NumberError::Unreadable)?;
     if value.is_finite() && value > 0.0 { Ok(value) } else { Err(NumberError::NotPositive) }
-}
-
-/// "2%", as a part of one.
-fn parse_accuracy(word: &str) -> Result<f64, NumberError> {
-    let value: f64 = word.strip_suffix('%').unwrap_or("").trim().parse().map_err(|_| NumberError::NoPerCent)?;
-    if value > 0.0 && value < 100.0 { Ok(0.01 * value) } else { Err(NumberError::NoPerCent) }
-}
-
-/// "30s", "5min", "2h", in seconds.
-fn parse_time(word: &str) -> Result<f64, NumberError> {
-    let units = [("min", 60.0), ("s", 1.0), ("h", 3600.0)];
-    let value = units.iter().find_map(|(unit, seconds)| {
-        let value: f64 = word.strip_suffix(unit)?.trim().parse().ok()?;
-        Some(value * seconds)
-    });
-    value.filter(|value| value.is_finite() && *value > 0.0).ok_or(NumberError::NoTime)
 }
 
 fn parse_cells(word: &str) -> Result<f64, NumberError> {
@@ -592,24 +573,6 @@ mod tests {
         assert_eq!(run.mesh.formats, [Format::Glb, Format::Ply]);
         assert_eq!(run.mesh.parts, [Part::Cracked, Part::Faces]);
         assert_eq!(run.mesh.up, Some(UpAxis::Y));
-    }
-
-    #[test]
-    fn wishes_have_a_unit() {
-        for (word, expected) in [("2%", Some(0.02)), ("1.5 %", Some(0.015)), ("2", None), ("0%", None), ("nan%", None)]
-        {
-            assert_eq!(parse_accuracy(word).ok(), expected, "{word}");
-        }
-        for (word, expected) in [
-            ("30s", Some(30.0)),
-            ("5min", Some(300.0)),
-            ("0.5 h", Some(1800.0)),
-            ("30", None),
-            ("-1s", None),
-            ("infs", None),
-        ] {
-            assert_eq!(parse_time(word).ok(), expected, "{word}");
-        }
     }
 
     #[test]

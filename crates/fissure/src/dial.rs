@@ -1,10 +1,10 @@
-//! `--accuracy` and `--budget`: the particle spacing that a wish comes to, as overrides of the scene.
+//! The particle spacing that a wish for an accuracy or a time comes to, as overrides of the scene.
 
 use crate::check::expected_seconds;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use fissure_scene::Scene;
-use fissure_sim::{DialError, Simulation, Wish};
+use fissure_scene::{KeyPath, Scene, Wish};
+use fissure_sim::{DialError, Simulation};
 
 /// The overrides that make `scene` as wished.
 ///
@@ -19,6 +19,17 @@ pub(crate) fn overrides(scene: &Scene, wish: Wish) -> Result<Vec<String>, Failur
         keys.push(format!("grid.cell_size={:?}", ratio * spacing));
     }
     Ok(keys)
+}
+
+/// Where a scene says what it wishes for.
+pub(crate) fn key(wish: Wish) -> KeyPath {
+    KeyPath::setting(
+        "grid",
+        match wish {
+            Wish::Accuracy(_) => "accuracy",
+            Wish::Budget(_) => "budget",
+        },
+    )
 }
 
 impl From<DialError> for Failure {

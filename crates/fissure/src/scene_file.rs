@@ -7,7 +7,7 @@ use crate::drawn::{self, Wanted};
 use crate::exit::Exit;
 use crate::failure::{Failure, Snippet};
 use crate::report::Report;
-use fissure_scene::{LoadError, LoadErrorKind, Loaded, Scene};
+use fissure_scene::{LoadError, LoadErrorKind, Loaded, Scene, Wish};
 use fissure_sim::SimulationError;
 use miette::NamedSource;
 use std::path::{Path, PathBuf};
@@ -44,11 +44,12 @@ pub(crate) fn read(arguments: &SceneArguments, wanted: &Wanted<'_>, report: &Rep
             // Nothing is written and said but of the scene that is run.
             let first = Wanted { written: false, ..*wanted };
             let as_it_is = load(arguments, &arguments.overrides, &first, &report.silent())?;
-            let chosen = dial::overrides(&as_it_is.scene, wish).map_err(|failure| SceneFile(as_it_is).show(failure))?;
-            report.note(&format!("chosen: {}", chosen.join(", ")));
-            load(arguments, &[&arguments.overrides[..], &chosen].concat(), wanted, report)?
+            load(arguments, &as_wished(arguments, as_it_is, wish, report)?, wanted, report)?
         }
     };
+    if let Some(wish) = loaded.wish {
+        loaded = load(arguments, &as_wished(arguments, loaded, wish, report)?, wanted, &report.silent())?;
+    }
     let foreseen = fissure_sim::warnings(&loaded.scene);
     loaded.warn(foreseen);
     for warning in &loaded.warnings {
@@ -62,6 +63,26 @@ pub(crate) fn read(arguments: &SceneArguments, wanted: &Wanted<'_>, report: &Rep
         )),
         _ => Ok(SceneFile(loaded)),
     }
+}
+
+/// All overrides of a scene with what its wish comes to, which is told. `as_it_is`: without that.
+///
+/// # Errors
+/// When the wish is not to be had; shown where it is written.
+fn as_wished(
+    arguments: &SceneArguments,
+    as_it_is: Loaded,
+    wish: Wish,
+    report: &Report,
+) -> Result<Vec<String>, Failure> {
+    let chosen = dial::overrides(&as_it_is.scene, wish).map_err(|mut failure| {
+        if failure.keys.is_empty() && arguments.wish().is_none() {
+            failure.keys.push(dial::key(wish));
+        }
+        SceneFile(as_it_is).show(failure)
+    })?;
+    report.note(&format!("chosen: {}", chosen.join(", ")));
+    Ok([&arguments.overrides[..], &chosen].concat())
 }
 
 /// Loads a scene with `overrides` on top, or makes that of a drawing.

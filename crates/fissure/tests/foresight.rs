@@ -209,3 +209,34 @@ fn accuracy_and_budget_choose_the_spacing() {
     let (code, _, told) = said_by(&["--accuracy", "3%", "--budget", "3s"]);
     assert!(code == 2 && told.contains("cannot be used with"), "{told}");
 }
+
+/// Truth: the flags. A key of the scene says the same as its flag, yields to it, and is shown with its line where it is
+/// not to be had.
+#[test]
+fn keys_of_the_scene_choose_the_spacing_as_flags_do() {
+    let bare = format!("name = \"plate\"\n{}", pulled("20e6"));
+    let spacing = "particle_spacing = 0.3125";
+    assert!(bare.contains(spacing), "{bare}");
+    let with = |key: &str| bare.replace(spacing, key);
+    let (none, all) = (with(""), ["--log", "json"]);
+    for (key, flag) in [("accuracy = \"3%\"", ["--accuracy", "3%"]), ("budget = \"3s\"", ["--budget", "3s"])] {
+        let by_flag = said(&none, "check", &[&all[..], &flag].concat());
+        assert_eq!(by_flag.0, 0, "{}", by_flag.2);
+        assert_eq!(said(&with(key), "check", &all), by_flag);
+        assert_eq!(said(&with("accuracy = \"9%\""), "check", &[&all[..], &flag].concat()), by_flag);
+    }
+    for (keys, words) in [
+        ("accuracy = \"0.01%\"", &["scene.toml:13:12", "ask for 1.00 % or more"][..]),
+        ("budget = \"1ms\"", &["scene.toml:13:10", "`budget` cannot be `1ms`", "such as 30s, 5min or 2h"]),
+        ("budget = 30", &["scene.toml:13:10", "is 30, but it takes text in quotes", "\"30s\""]),
+        ("accuracy = \"2%\"\nbudget = \"9s\"", &["scene.toml:13:12", "both `accuracy` and `budget`"]),
+        ("accuracy = \"2%\"\nparticle_spacing = 0.1", &["scene.toml:13:12", "leave `particle_spacing` out"]),
+        ("budget = \"9s\"\ncell_size = 0.1", &["scene.toml:13:10", "leave `cell_size` out"]),
+    ] {
+        let (code, _, told) = said(&with(keys), "check", &[]);
+        assert_eq!(code, 2, "{told}");
+        assert!(words.iter().all(|word| told.contains(word)), "{words:?}\n{told}");
+    }
+    let (code, _, told) = said(&with("budget = \"9s\""), "check", &["--set", "grid.particle_spacing=0.5"]);
+    assert!(code == 0 && !told.contains("chosen"), "{told}");
+}

@@ -31,6 +31,7 @@ mod take;
 mod take_settings;
 mod toughness;
 mod validate;
+mod wish;
 
 pub use fissure_plane::{Matrix, Point, Region, Vector};
 
@@ -51,3 +52,4 @@ pub use settings::*;
 pub use take::*;
 pub use take_settings::*;
 pub use toughness::*;
+pub use wish::{Wish, WishError};

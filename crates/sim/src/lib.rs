@@ -111,7 +111,7 @@ pub use material::constitutive::{
     volume_change,
 };
 pub use material::elastic::Elastic;
-pub use simulation::{Counts, DialError, Estimate, Progress, Simulation, Stage, TimeParts, Wish};
+pub use simulation::{Counts, DialError, Estimate, Progress, Simulation, Stage, TimeParts};
 pub use tip::contours::ContourReading;
 pub use tip::stress_intensity::{StressIntensity, crack_speed_factors, universal_function};
 pub use tip::williams::{TipField, moving_tip_fields, williams_fields};

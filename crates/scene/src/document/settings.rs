@@ -23,6 +23,14 @@ pub struct GridKeys {
     /// Distance between neighbouring grid nodes in m. Default: twice the particle spacing.
     #[schemars(transform = LENGTH.bounds())]
     pub cell_size: Option<f64>,
+    /// Instead of both: the coarsest particles with which the highest K of each tip is within so much, in per cent, as
+    /// `"2%"`.
+    #[schemars(regex(pattern = r"^[0-9.eE+-]+ *%$"))]
+    pub accuracy: Option<String>,
+    /// Instead of all of these: the finest particles with which a run takes no longer than so long, meshes included, as
+    /// `"30s"`, `"5min"` or `"2h"`.
+    #[schemars(regex(pattern = r"^[0-9.eE+-]+ *(s|min|h)$"))]
+    pub budget: Option<String>,
 }
 
 /// Solver settings; each defaults to the preset's value.

@@ -5,12 +5,15 @@ use super::resolve::Origin;
 use super::source::SceneSource;
 use crate::fault::{KeyPath, Warning};
 use crate::scene::Scene;
+use crate::wish::Wish;
 
 /// A scene, what will hardly go well with it, and where each of its keys is written.
 #[derive(Debug)]
 pub struct Loaded {
     /// The scene.
     pub scene: Scene,
+    /// What the scene wants instead of a resolution: it has the default one until somebody chooses.
+    pub wish: Option<Wish>,
     /// What will hardly go well. Paths count items as in the file.
     pub warnings: Vec<Warning>,
     pub(super) source: SceneSource,

@@ -34,7 +34,8 @@ use std::path::{Path, PathBuf};
 
 /// Loads a scene file and everything it refers to, with `overrides` such as `body.plate.material=glass` on top.
 ///
-/// The scene passes [`Scene::validate`]. Mouths of cracks are corners of their rings to the bit.
+/// The scene passes [`Scene::validate`]. Mouths of cracks are corners of their rings to the bit. A scene that wishes
+/// for an accuracy or a time has the default resolution; [`Loaded::wish`] says what it wishes for.
 ///
 /// # Errors
 /// [`LoadError`], which says where: file, line, value and remedy.
@@ -69,9 +70,9 @@ fn load_text(
         |keys: &ToughnessKeys| keys.image.as_ref().map(|file| Picture::read(&locate(file), &mut budget)).transpose();
     let pictures = document.toughness.iter().map(picture).collect::<Result<Vec<_>, _>>()?;
     let resolver = Resolver::new(&document, drawing.as_ref(), &pictures, default_name(path));
-    let Resolution { mut scene, origin, warnings } = resolver.resolve().map_err(|fault| source.error(fault))?;
+    let Resolution { mut scene, wish, origin, warnings } = resolver.resolve().map_err(|fault| source.error(fault))?;
     scene.hash = scene.simulation_hash();
-    Ok(Loaded { scene, warnings, source, origin })
+    Ok(Loaded { scene, wish, warnings, source, origin })
 }
 
 /// JSON schema of the scene file, for editors and user interfaces.

@@ -50,7 +50,22 @@ impl Override {
             here = step(here, key, &mut path)?;
         }
         *step(here, last, &mut path)? = self.value.clone();
+        if let ([parent], Value::Table(table)) = (parents, here)
+            && parent == "grid"
+        {
+            replaced_by(last).iter().for_each(|other| drop(table.remove(*other)));
+        }
         Ok(path)
+    }
+}
+
+/// Keys of `grid` that one of them takes the place of: a wish that of a resolution, and the other way round.
+fn replaced_by(key: &str) -> &'static [&'static str] {
+    match key {
+        "accuracy" => &["budget", "particle_spacing", "cell_size"],
+        "budget" => &["accuracy", "particle_spacing", "cell_size"],
+        "particle_spacing" => &["accuracy", "budget"],
+        _ => &[],
     }
 }
 
@@ -163,6 +178,21 @@ mod tests {
         assert!(message.contains("`bb`") && remedy.contains("`b`"), "{message} {remedy}");
         assert!(set(&mut table, "body.a.name.x=1").unwrap_err().0.contains("string"));
         assert_eq!(set(&mut table, "material.pmma.density=1").unwrap(), "material[0].density");
+    }
+
+    /// The last word on the resolution counts, whichever key it is.
+    #[test]
+    fn a_wish_and_a_resolution_take_the_place_of_each_other() {
+        let mut table: Table = toml::from_str("[grid]\nparticle_spacing = 0.1\ncell_size = 0.2").unwrap();
+        for (argument, left) in [
+            ("grid.accuracy=2%", &["accuracy"][..]),
+            ("grid.budget=30s", &["budget"]),
+            ("grid.particle_spacing=0.1", &["particle_spacing"]),
+            ("grid.cell_size=0.3", &["cell_size", "particle_spacing"]),
+        ] {
+            set(&mut table, argument).unwrap();
+            assert!(table["grid"].as_table().unwrap().keys().eq(left), "{argument}: {table}");
+        }
     }
 
     proptest! {

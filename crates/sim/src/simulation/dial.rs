@@ -5,16 +5,7 @@ use crate::SimulationError;
 use crate::foresight;
 use crate::formulation;
 use crate::material::elastic::Elastic;
-use fissure_scene::Scene;
-
-/// What is wanted of the resolution of a scene.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Wish {
-    /// The highest K of each tip shall be within this part of it [–].
-    Accuracy(f64),
-    /// The run shall take so long [s].
-    Budget(f64),
-}
+use fissure_scene::{Scene, Wish};
 
 /// Why a wish is not to be had.
 #[derive(Debug, thiserror::Error)]

@@ -18,7 +18,7 @@ mod view;
 mod watch;
 
 pub use counts::Counts;
-pub use dial::{DialError, Wish};
+pub use dial::DialError;
 pub use estimate::{Estimate, TimeParts};
 pub use stages::Stage;
 

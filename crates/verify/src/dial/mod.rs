@@ -8,8 +8,8 @@ mod plate;
 use crate::cpu_time::cpu_time;
 use crate::placed::Placed;
 use crate::placement::Placement;
-use fissure_scene::Scene;
-use fissure_sim::{DialError, Limit, Simulation, SimulationError, Wish};
+use fissure_scene::{Scene, Wish};
+use fissure_sim::{DialError, Limit, Simulation, SimulationError};
 use plate::Random;
 use std::ops::ControlFlow;
 

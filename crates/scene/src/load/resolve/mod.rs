@@ -14,6 +14,7 @@ mod settings;
 mod shapes;
 mod short_cracks;
 mod toughness;
+mod wish;
 
 use super::drawing::LoadedDrawing;
 use super::picture::Picture;
@@ -23,6 +24,7 @@ use crate::range::{ITEMS, LENGTH};
 use crate::scene::Scene;
 use crate::settings::ContactSettings;
 use crate::take_settings::TakeSettings;
+use crate::wish::Wish;
 use fissure_plane::Vector;
 use std::cell::RefCell;
 
@@ -52,6 +54,8 @@ pub(crate) struct Resolver<'d> {
 #[derive(Debug)]
 pub(crate) struct Resolution {
     pub(crate) scene: Scene,
+    /// What takes the place of its resolution.
+    pub(crate) wish: Option<Wish>,
     pub(crate) origin: Origin,
     /// Paths count items as in the document.
     pub(crate) warnings: Vec<Warning>,
@@ -75,8 +79,8 @@ impl<'d> Resolver<'d> {
 
     /// The scene, validated, with what was told on the way.
     pub(crate) fn resolve(mut self) -> Resolved<Resolution> {
-        let scene = self.scene()?;
-        Ok(Resolution { scene, origin: self.origin, warnings: self.warnings.into_inner() })
+        let (wish, scene) = (self.wish()?, self.scene()?);
+        Ok(Resolution { scene, wish, origin: self.origin, warnings: self.warnings.into_inner() })
     }
 
     fn scene(&mut self) -> Resolved<Scene> {
