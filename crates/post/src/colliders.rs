@@ -63,9 +63,10 @@ fn collider_mesh(
         crease_angle: options.crease_angle,
         texture_origin: low,
         texture_size: (high - low).amax(),
+        relief: None,
     };
     let area = 0.5 * shapes.iter().flatten().map(|c| twice_area(c)).sum::<i128>() as f64 * grid.step * grid.step;
-    let content = Content::Solid { area, thickness: options.thickness };
+    let content = Content::Solid { area, thickness: options.thickness, slack: 0.0 };
     let mut mesh = Mesh::new(object_name(&collider.name, "collider", index), index, content);
     shapes.iter().for_each(|shape| extrusion.solid(&triangulate(shape, Division::Plain), &[], &mut mesh));
     let defect = |defect| PostError::Defect { frame: frame.number, mesh: mesh.name.clone(), defect };

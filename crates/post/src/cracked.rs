@@ -16,6 +16,7 @@ use crate::outline::outline_edges;
 use crate::overlaps::{Enclosed, share_out_overlaps};
 use crate::pieces::numbers;
 use crate::pinch::part_pinches;
+use crate::relief::Relief;
 use crate::rest_cut::rest_cap;
 use crate::short_edges::{Growth, without_short_edges};
 use crate::slivers::{fill_narrow_holes, without_slivers};
@@ -60,6 +61,9 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
         };
         shifts.iter_mut().zip(more).for_each(|(shift, more)| *shift = *shift + more);
     }
+    let relief = options
+        .roughness
+        .map(|roughness| Relief::new(roughness, options.thickness, frame, &cracks.cracks, &cracks.offsets));
     let lines = MovedLines::new(scene, frame, &cracks, shifts);
     let mut objects = BTreeMap::<ObjectKey, Vec<Vec<Vec<SourceEdge>>>>::new();
     for (fragment, number) in fragments.list().iter().zip(numbers) {
@@ -67,7 +71,7 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
         let boundaries = fragment.boundaries.iter().map(|boundary| lines.edges(boundary, grid)).collect();
         objects.entry((fragment.body, number)).or_default().push(boundaries);
     }
-    let solids = Solids::new(scene, frame, options, &grids);
+    let solids = Solids { relief: relief.as_ref(), ..Solids::new(scene, frame, options, &grids) };
     let mut meshes = BTreeMap::new();
     let mut opened = Boundaries::new();
     for ((body, piece), fragments) in objects {
@@ -152,6 +156,8 @@ struct Solids<'a> {
     grids: &'a [Grid],
     interiors: Vec<Interior<'a>>,
     names: Vec<String>,
+    /// How rough the walls of cracks are.
+    relief: Option<&'a Relief>,
     check: fn(&Mesh) -> Result<(), MeshDefect>,
 }
 
@@ -159,7 +165,7 @@ impl<'a> Solids<'a> {
     fn new(scene: &'a Scene, frame: &'a Frame, options: &'a PostOptions, grids: &'a [Grid]) -> Self {
         let interior = |body| Interior::new(frame, body, scene.particle_spacing, options.cut);
         let interiors = (0..scene.bodies.len() as u32).map(interior).collect();
-        Self { scene, frame, options, grids, interiors, names: body_names(scene), check: Mesh::check }
+        Self { scene, frame, options, grids, interiors, names: body_names(scene), relief: None, check: Mesh::check }
     }
 
     /// Extrudes what the boundaries of fragments enclose as they are now; nothing where that is no more than rounding.
@@ -277,7 +283,7 @@ impl<'a> Solids<'a> {
         mesh.as_ref().is_none_or(|mesh| (self.check)(mesh).is_ok()).then_some(mesh)
     }
 
-    fn extrusion<'b>(&self, body: u32, sources: &'b [SourceEdge]) -> Extrusion<'b> {
+    fn extrusion<'b>(&'b self, body: u32, sources: &'b [SourceEdge]) -> Extrusion<'b> {
         Extrusion {
             grid: self.grids[body as usize],
             sources,
@@ -285,6 +291,7 @@ impl<'a> Solids<'a> {
             crease_angle: self.options.crease_angle,
             texture_origin: self.scene.bodies[body as usize].region.bounds().0,
             texture_size: size(self.scene, body),
+            relief: self.relief,
         }
     }
 
@@ -292,7 +299,7 @@ impl<'a> Solids<'a> {
     fn mesh(&self, body: u32, piece: u32, extrusion: &Extrusion<'_>, caps: Vec<(Cap, Vec<Carried>)>) -> Option<Mesh> {
         let area = caps.iter().map(|(cap, _)| area(&cap.shape, extrusion.grid)).sum();
         let name = object_name(&self.names[body as usize], "piece", piece);
-        let mut mesh = Mesh::new(name, piece, Content::Solid { area, thickness: self.options.thickness });
+        let mut mesh = Mesh::new(name, piece, Content::Solid { area, thickness: self.options.thickness, slack: 0.0 });
         caps.iter().for_each(|(cap, within)| extrusion.solid(cap, within, &mut mesh));
         (!caps.is_empty()).then_some(mesh)
     }

@@ -2,6 +2,7 @@
 
 use crate::boolean::Edge;
 use crate::mesh::{Mesh, Vertex};
+use crate::relief::Relief;
 use crate::slot::Slot;
 use crate::snap::{Grid, GridPoint};
 use crate::source::{Carried, SourceEdge};
@@ -23,6 +24,8 @@ pub(crate) struct Extrusion<'a> {
     pub(crate) texture_origin: Point,
     /// Length of one texture unit [m].
     pub(crate) texture_size: f64,
+    /// How rough the walls of cracks are; none: smooth.
+    pub(crate) relief: Option<&'a Relief>,
 }
 
 impl Extrusion<'_> {
@@ -63,17 +66,13 @@ impl Extrusion<'_> {
 
     /// The walls on the edges of `contour`, which is a ring if `closed`; texture coordinates by arc length at rest.
     pub(crate) fn walls(&self, contour: &[Edge], closed: bool, mesh: &mut Mesh) {
+        if let Some(relief) = self.relief
+            && contour.iter().any(|edge| self.source(edge).slot == Slot::Inside)
+        {
+            return self.rough_walls(contour, closed, relief, mesh);
+        }
         let count = contour.len();
-        let posts: Vec<[Post; 2]> = (0..count)
-            .map(|i| {
-                let (edge, source) = (&contour[i], self.source(&contour[i]));
-                let before = (i > 0 || closed).then(|| &contour[(i + count - 1) % count]);
-                let after = (i + 1 < count || closed).then(|| &contour[(i + 1) % count]);
-                let post =
-                    |point, other| Post { point, carried: source.at(point), normal: self.corner_normal(edge, other) };
-                [post(edge.a, before), post(edge.b, after)]
-            })
-            .collect();
+        let posts = self.posts(contour, closed);
         // Beginning at a seam, a smooth wall never has to close on vertices of its beginning.
         let seam = (0..count).find(|&i| posts[i][0] != posts[(i + count - 1) % count][1]).unwrap_or(0);
         let mut previous: Option<(Post, [u32; 2])> = None;
@@ -90,8 +89,23 @@ impl Extrusion<'_> {
         }
     }
 
+    /// The vertical edges at the start and the end of each edge of `contour`, which is a ring if `closed`.
+    pub(crate) fn posts(&self, contour: &[Edge], closed: bool) -> Vec<[Post; 2]> {
+        let count = contour.len();
+        (0..count)
+            .map(|i| {
+                let (edge, source) = (&contour[i], self.source(&contour[i]));
+                let before = (i > 0 || closed).then(|| &contour[(i + count - 1) % count]);
+                let after = (i + 1 < count || closed).then(|| &contour[(i + 1) % count]);
+                let post =
+                    |point, other| Post { point, carried: source.at(point), normal: self.corner_normal(edge, other) };
+                [post(edge.a, before), post(edge.b, after)]
+            })
+            .collect()
+    }
+
     /// Adds the two vertices of a vertical wall edge, the back one first.
-    fn post(&self, post: &Post, mesh: &mut Mesh) -> [u32; 2] {
+    pub(crate) fn post(&self, post: &Post, mesh: &mut Mesh) -> [u32; 2] {
         let place = self.grid.place(post.point);
         let first = mesh.vertices.len() as u32;
         for z in [-0.5 * self.thickness, 0.5 * self.thickness] {
@@ -119,20 +133,20 @@ impl Extrusion<'_> {
         if smooth { (own + wall_normal(other)).normalize() } else { own }
     }
 
-    fn source(&self, edge: &Edge) -> &SourceEdge {
+    pub(crate) fn source(&self, edge: &Edge) -> &SourceEdge {
         &self.sources[edge.source.0 as usize]
     }
 }
 
 /// A vertical wall edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Post {
+pub(crate) struct Post {
     point: GridPoint,
-    carried: Carried,
+    pub(crate) carried: Carried,
     normal: Vector,
 }
 
 /// Outward unit normal of the wall on `edge`: to its right.
-fn wall_normal(edge: &Edge) -> Vector {
+pub(crate) fn wall_normal(edge: &Edge) -> Vector {
     Vector::new((edge.b.y - edge.a.y) as f64, (edge.a.x - edge.b.x) as f64).normalize()
 }

@@ -6,6 +6,7 @@ use crate::extrude::Extrusion;
 use crate::mesh::{Content, Mesh, object_name};
 use crate::opening::opening_edges;
 use crate::options::PostOptions;
+use crate::relief::Relief;
 use crate::smooth::SmoothCracks;
 use crate::snap::Grid;
 use crate::widening::{Widening, widened};
@@ -14,15 +15,19 @@ use fissure_scene::{CrackFrame, Fragments, Frame, Scene};
 /// One mesh per crack: both faces over the thickness, normals into the opening. Closed cracks have faces too.
 pub(crate) fn face_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Vec<Mesh> {
     let cracks = SmoothCracks::new(scene, frame, &Fragments::of_frame(frame), options.smoothing);
+    let relief = options
+        .roughness
+        .map(|roughness| Relief::new(roughness, options.thickness, frame, &cracks.cracks, &cracks.offsets));
+    let relief = relief.as_ref();
     let Some(opening) = &options.opening else {
-        return cracks.cracks.iter().map(|crack| face_mesh(scene, crack, options)).collect();
+        return cracks.cracks.iter().map(|crack| face_mesh(scene, crack, options, relief)).collect();
     };
     let widening = Widening::new(opening, scene, frame.time);
     let shown = |crack: &CrackFrame| widened(crack, &widening.shifts(crack));
-    cracks.cracks.iter().map(|crack| face_mesh(scene, &shown(crack), options)).collect()
+    cracks.cracks.iter().map(|crack| face_mesh(scene, &shown(crack), options, relief)).collect()
 }
 
-fn face_mesh(scene: &Scene, crack: &CrackFrame, options: &PostOptions) -> Mesh {
+fn face_mesh(scene: &Scene, crack: &CrackFrame, options: &PostOptions, relief: Option<&Relief>) -> Mesh {
     let body = &scene.bodies[crack.body as usize];
     let (low, high) = body.region.bounds();
     let grid = Grid::covering(crack.above.iter().chain(&crack.below), 0.0);
@@ -35,6 +40,7 @@ fn face_mesh(scene: &Scene, crack: &CrackFrame, options: &PostOptions) -> Mesh {
         crease_angle: options.crease_angle,
         texture_origin: low,
         texture_size: (high - low).amax(),
+        relief,
     };
     let name = object_name(&body_names(scene)[crack.body as usize], "crack", crack.crack);
     let mut mesh = Mesh::new(name, crack.crack, Content::Surface);

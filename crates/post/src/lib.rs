@@ -21,6 +21,7 @@
 //! 7. `overlaps`: fragments that lie in each other a little share the middle; then steps 4 to 6 once more.
 //! 8. `triangulate`, `interior`, `extrude`: caps of triangles without small angles, and walls, with normals, texture
 //!    coordinates, velocities and material slots.
+//!    `relief`, `rough_walls`: walls of cracks that are not plane, where asked for.
 //! 9. [`Mesh::check`]: closed, manifold, oriented, volume = area × thickness, in the precision of the file.
 //! 10. `formats`: the bytes of files, one module per format; `write`, `manifest`: the files, with the feature `files`,
 //!     which is on by default.
@@ -67,8 +68,10 @@ mod post;
 mod provenance;
 #[cfg(feature = "files")]
 mod record;
+mod relief;
 mod rest_cut;
 mod rigid;
+mod rough_walls;
 #[cfg(feature = "files")]
 mod sequences;
 mod short_edges;

@@ -1,7 +1,7 @@
 //! How a frame becomes meshes.
 
 use crate::error::PostError;
-use fissure_scene::{Curve, Cut, OpeningSettings, OutputSettings, Part, UpAxis, Walls};
+use fissure_scene::{Curve, Cut, OpeningSettings, OutputSettings, Part, Roughness, UpAxis, Walls};
 
 /// Shortest edge of contours, as a part of the body: twice the distance at which readers merge vertices, because
 /// triangles without small angles need shorter ones than their outline has.
@@ -25,6 +25,8 @@ pub struct PostOptions {
     /// Edges shorter than this part of the body are taken out, unless they were drawn; contours that touch in a point
     /// are parted by a quarter of it.
     pub shortest_edge: f64,
+    /// How rough the walls of cracks are; none: smooth.
+    pub roughness: Option<Roughness>,
     /// Length of the edges within caps, at most; none: as long as may be [m].
     pub cap_size: Option<f64>,
     /// How wide cracks are shown; none: as they are.
@@ -49,6 +51,7 @@ impl From<&OutputSettings> for PostOptions {
             smoothing: output.surfaces.smoothing,
             opening: output.opening.clone(),
             explode: output.explode.clone(),
+            roughness: output.surfaces.roughness,
             shortest_edge: SHORTEST_EDGE,
             cap_size: output.surfaces.cap_size,
             parts: output.parts.clone(),
@@ -77,6 +80,10 @@ impl PostOptions {
         };
         positive("thickness", self.thickness)?;
         self.cap_size.map_or(Ok(()), |size| positive("cap_size", size))?;
+        if let Some(roughness) = &self.roughness {
+            positive("roughness.amplitude", roughness.amplitude)?;
+            positive("roughness.length", roughness.length)?;
+        }
         not_negative("smallest_fragment", self.smallest_fragment)?;
         not_negative("smoothing", self.smoothing)?;
         not_negative("shortest_edge", self.shortest_edge)?;

@@ -75,7 +75,7 @@ fn record(file: String, path: PathBuf, format: Format, shot: &Shot<'_>) -> FileR
     let objects = shot.objects;
     let solids = || {
         objects.iter().filter_map(|m| {
-            if let Content::Solid { area, thickness } = m.content { Some((area, thickness, m)) } else { None }
+            if let Content::Solid { area, thickness, .. } = m.content { Some((area, thickness, m)) } else { None }
         })
     };
     FileRecord {

@@ -407,11 +407,24 @@ pub struct SurfaceSettings {
     pub cut: Cut,
     /// How far the paths of cracks may be moved to be smooth, in cells.
     pub smoothing: f64,
+    /// How rough the walls of cracks are shown; none: as the cracks are.
+    pub roughness: Option<Roughness>,
+}
+
+/// How rough the walls of cracks are shown.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Roughness {
+    /// Most that a wall is moved [m].
+    pub amplitude: f64,
+    /// Length over which it is moved about alike [m].
+    pub length: f64,
+    /// Number that stands for one relief.
+    pub seed: u64,
 }
 
 impl Default for SurfaceSettings {
     fn default() -> Self {
-        Self { cap_size: None, cut: Cut::default(), smoothing: SMOOTHING }
+        Self { cap_size: None, cut: Cut::default(), smoothing: SMOOTHING, roughness: None }
     }
 }
 

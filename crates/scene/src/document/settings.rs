@@ -240,10 +240,27 @@ pub struct OutputKeys {
     /// How far the paths of cracks that grew freely may be moved to be smooth, in cells. Default: 0.5; 0: not at all.
     #[schemars(transform = SMOOTHING_CELLS.bounds())]
     pub smoothing: f64,
+    /// How rough the walls of cracks are shown. Default: as the cracks are.
+    pub roughness: Option<RoughnessKeys>,
     /// How wide cracks are shown. Default: as they are.
     pub opening: Option<OpeningKeys>,
     /// How far fragments are shown apart. Default: where they are.
     pub explode: Option<ExplodeKeys>,
+}
+
+/// How rough the walls of cracks are shown: both faces of a crack alike, less towards the caps, outlines and tips.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RoughnessKeys {
+    /// Most that a wall is moved in m: half a cell at most.
+    #[schemars(transform = LENGTH.bounds())]
+    pub amplitude: f64,
+    /// Length in m over which a wall is moved about alike: four amplitudes or more. Default: ten amplitudes.
+    #[schemars(transform = LENGTH.bounds())]
+    pub length: Option<f64>,
+    /// Number that stands for one relief. Default: 0.
+    #[serde(default)]
+    pub seed: u64,
 }
 
 /// How wide cracks are shown, whatever the simulation says.
@@ -293,6 +310,7 @@ impl Default for OutputKeys {
             cap_size: None,
             cut: Cut::default(),
             smoothing: SMOOTHING,
+            roughness: None,
             opening: None,
             explode: None,
         }

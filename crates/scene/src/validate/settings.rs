@@ -8,7 +8,7 @@ use crate::range::{
     PARTICLES, RELEASE_RATIO, SMOOTHING_CELLS, TIME, TIME_STEP, UNIT, WIDTH,
 };
 use crate::scene::{Body, Scene};
-use crate::settings::Branching;
+use crate::settings::{Branching, Roughness};
 
 /// Most particles along the larger side of a body: beyond it a spacing is a slip of the pen.
 const MOST_ALONG_A_SIDE: f64 = 1e5;
@@ -20,6 +20,10 @@ const LEAST_STEPS_PER_SPACING: f64 = 16.0;
 
 /// Most triangles of a cap of given size.
 const MOST_CAP_TRIANGLES: f64 = 4e6;
+/// Least length of a relief, in amplitudes.
+const ROUGHNESS_LENGTH: f64 = 4.0;
+/// Most lengths of a relief along the longest side of a body, and in the thickness.
+const MOST_RELIEFS: f64 = 1000.0;
 /// Area of an equilateral triangle, over the square of its side.
 const EQUILATERAL: f64 = 0.433;
 
@@ -168,6 +172,7 @@ impl Scene {
         AREA.check(KeyPath::setting("output", "smallest_fragment"), "the smallest fragment", o.smallest_fragment)?;
         SMOOTHING_CELLS.check(KeyPath::setting("output", "smoothing"), "`smoothing`", o.surfaces.smoothing)?;
         o.surfaces.cap_size.map_or(Ok(()), |size| self.validate_cap_size(size))?;
+        o.surfaces.roughness.as_ref().map_or(Ok(()), |roughness| self.validate_roughness(roughness))?;
         if let Some(opening) = &o.opening {
             let path = KeyPath::setting("output", "opening");
             let points = &opening.factor.points;
@@ -179,6 +184,34 @@ impl Scene {
             let path = KeyPath::setting("output", "explode").then("keyframes");
             validate_factor(&path, "the keyframes of `explode`", Clock::Seconds, &curve.points)
         })
+    }
+
+    /// Walls that are moved by more than half a cell, or whose relief is too steep, could come to cross each other;
+    /// those with more triangles than anybody opens are a slip of the pen.
+    fn validate_roughness(&self, roughness: &Roughness) -> Check {
+        let path = |key| KeyPath::setting("output", "roughness").then(key);
+        let Roughness { amplitude, length, .. } = *roughness;
+        LENGTH.check(path("amplitude"), "`amplitude`", amplitude)?;
+        LENGTH.check(path("length"), "`length`", length)?;
+        let half_cell = 0.5 * self.cell_size;
+        if amplitude > half_cell {
+            let message = format!("walls would be moved by {amplitude} m, more than half a cell, {half_cell} m");
+            return Err(SceneFault::new(path("amplitude"), message, format!("make it at most {half_cell}")));
+        }
+        if length < ROUGHNESS_LENGTH * amplitude {
+            let message = format!("a relief {length} m long is too steep with an amplitude of {amplitude} m");
+            let remedy = format!("make `length` at least {}, or leave it out", short(ROUGHNESS_LENGTH * amplitude));
+            return Err(SceneFault::new(path("length"), message, remedy));
+        }
+        let side = |body: &Body| (body.region.bounds().1 - body.region.bounds().0).amax();
+        let longest = self.bodies.iter().map(side).fold(self.output.thickness, f64::max);
+        if length * MOST_RELIEFS < longest {
+            let message =
+                format!("walls of {} m with a relief {length} m long have too many triangles", short(longest));
+            let remedy = format!("make `length` at least {:.2e}", longest / MOST_RELIEFS);
+            return Err(SceneFault::new(path("length"), message, remedy));
+        }
+        Ok(())
     }
 
     /// Caps of more triangles than anybody opens are a slip of the pen.

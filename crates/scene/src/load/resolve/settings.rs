@@ -3,7 +3,7 @@
 use super::motion::pairs;
 use super::{Resolved, Resolver};
 use crate::curve::Curve;
-use crate::document::{Ease, ExplodeKeys, OpeningKeys, TimeStep};
+use crate::document::{Ease, ExplodeKeys, OpeningKeys, RoughnessKeys, TimeStep};
 use crate::fault::{KeyPath, SceneFault};
 use crate::presets::{solver_preset, updated_kernel};
 use crate::range::SPEED_FACTOR;
@@ -112,11 +112,24 @@ impl<'d> Resolver<'d> {
             up: keys.up,
             smallest_fragment: keys.smallest_fragment,
             walls: keys.walls,
-            surfaces: SurfaceSettings { cap_size: keys.cap_size, cut: keys.cut, smoothing: keys.smoothing },
+            surfaces: SurfaceSettings {
+                cap_size: keys.cap_size,
+                cut: keys.cut,
+                smoothing: keys.smoothing,
+                roughness: keys.roughness.as_ref().map(roughness),
+            },
             opening: keys.opening.as_ref().map(|keys| opening(keys, frames, cell_size)).transpose()?,
             explode: keys.explode.as_ref().map(|keys| explode(keys, frames)).transpose()?,
         })
     }
+}
+
+/// Length of a relief, unless the scene says otherwise, in amplitudes.
+const RELIEF_LENGTH: f64 = 10.0;
+
+fn roughness(keys: &RoughnessKeys) -> Roughness {
+    let RoughnessKeys { amplitude, length, seed } = *keys;
+    Roughness { amplitude, length: length.unwrap_or(RELIEF_LENGTH * amplitude), seed }
 }
 
 /// From a tip to where the least width is reached, unless the scene says otherwise, in cells.
