@@ -14,7 +14,7 @@
 
 use crate::crack::crossing::{Meeting, Segment, Side, meeting};
 use crate::crack::split::{Split, runs_through};
-use fissure_plane::{Point, Vector, orientation};
+use fissure_plane::{Point, Vector, distance_to_segment, orientation};
 use fissure_scene::{Kernel, TipDivision};
 use rustc_hash::FxHashMap;
 
@@ -130,6 +130,41 @@ struct Line {
 }
 
 impl Line {
+    /// The segments that divide, or divided `before`, as they do not at the other of the two moments.
+    fn changed_segments(&self, before: Option<&Self>, cell_size: f64) -> Vec<(Point, Point)> {
+        let Some(before) = before.filter(|before| before.cut == self.cut && before.crack == self.crack) else {
+            let before = before.into_iter().flat_map(|before| &before.segments);
+            return before.chain(&self.segments).copied().collect();
+        };
+        // A crack has got new points at its ends, if any: what is between stays.
+        let same = |now: usize, was: usize| self.part(now) == before.part(was);
+        let [now, was] = [self, before].map(|line| line.of.iter().max().map_or(0, |&last| last as usize + 1));
+        let first = (0..now.min(was)).take_while(|&k| same(k, k)).count();
+        let last = (0..now.min(was) - first).take_while(|&k| same(now - 1 - k, was - 1 - k)).count();
+        let has = |line: &Self, part| (0..line.segments.len()).any(|k| line.part(k) == part);
+        // What a tip that has moved says of segments near to it.
+        let has_moved = |tip: &&TipRay| !(self.tips.contains(tip) && before.tips.contains(tip));
+        let moved: Vec<Point> =
+            self.tips.iter().chain(&before.tips).filter(has_moved).map(|tip| tip.position).collect();
+        let is_near = |line: &Self, k: usize| {
+            let (a, b) = line.segments[k];
+            let reach = 2.0 * AHEAD * cell_size;
+            line.at_tip[k] && moved.iter().any(|&tip| distance_to_segment(tip, a, b) < reach)
+        };
+        let changed = |line: &Self, other: &Self, count: usize| -> Vec<(Point, Point)> {
+            let is_new = |k: usize| if k < count { k >= first && k < count - last } else { !has(other, line.part(k)) };
+            (0..line.segments.len()).filter(|&k| is_new(k) || is_near(line, k)).map(|k| line.segments[k]).collect()
+        };
+        let mut segments = changed(self, before, now);
+        segments.extend(changed(before, self, was));
+        segments
+    }
+
+    /// All that a segment divides by.
+    fn part(&self, k: usize) -> ((Point, Point), SegmentKind, bool) {
+        (self.segments[k], self.kinds[k], self.at_tip[k])
+    }
+
     /// What the way from `particle` to `node` meets of those of `segments` (line, segment) whose kind `counts`.
     fn meeting(
         &self,
@@ -208,9 +243,12 @@ impl Division {
     }
 
     /// Puts `lines` in the place of those before. The cost is that of what has changed: of a crack that has grown at
-    /// its end, that of its new segments.
-    pub(crate) fn set_lines(&mut self, lines: Vec<CrackLine>) {
+    /// its end, that of its new segments. Returns the boxes, from low to high corner [m], outside which particles are
+    /// divided as they were.
+    pub(crate) fn set_lines(&mut self, lines: Vec<CrackLine>) -> Vec<(Point, Point)> {
+        let mut boxes = Vec::new();
         for index in lines.len()..self.lines.len() {
+            self.lines[index].segments.iter().for_each(|&segment| self.add_box(segment, &mut boxes));
             self.take_out(index, 0);
         }
         self.lines.truncate(lines.len());
@@ -219,6 +257,8 @@ impl Division {
                 continue;
             }
             let line = prepare(given, self.tip_division, self.cut, self.cell_size, self.reach);
+            let changed = line.changed_segments(self.lines.get(index), self.cell_size);
+            changed.into_iter().for_each(|segment| self.add_box(segment, &mut boxes));
             let before = self.lines.get(index).map_or(&[][..], |before| &before.segments);
             let unchanged = line.segments.iter().zip(before).take_while(|(now, before)| now == before).count();
             if index < self.lines.len() {
@@ -231,14 +271,32 @@ impl Division {
         }
         self.has_junctions = self.lines.iter().any(|l| l.has_junction);
         self.given = lines;
+        boxes
+    }
+
+    /// Adds the box of the cells in which a segment may divide pairs; boxes that touch become one.
+    fn add_box(&self, segment: (Point, Point), boxes: &mut Vec<(Point, Point)>) {
+        let [low, high] = self.range_of(segment);
+        let corner = |[i, j]: [i64; 2]| Point::new(i as f64, j as f64) * self.cell_size;
+        let mut whole = (corner(low), corner(high.map(|last| last + 1)));
+        while let Some(k) = boxes.iter().position(|(low, high)| whole.0 <= *high && *low <= whole.1) {
+            let (low, high) = boxes.swap_remove(k);
+            whole = (whole.0.inf(&low), whole.1.sup(&high));
+        }
+        boxes.push(whole);
     }
 
     /// Cells in which a segment may divide pairs.
-    fn cells_of(&self, (a, b): (Point, Point)) -> impl Iterator<Item = (i64, i64)> + use<> {
+    fn cells_of(&self, segment: (Point, Point)) -> impl Iterator<Item = (i64, i64)> + use<> {
+        let [low, high] = self.range_of(segment);
+        (low[1]..=high[1]).flat_map(move |j| (low[0]..=high[0]).map(move |i| (i, j)))
+    }
+
+    /// The first and the last of those cells, along both axes.
+    fn range_of(&self, (a, b): (Point, Point)) -> [[i64; 2]; 2] {
         let low = a.inf(&b).coords / self.cell_size - Vector::repeat(self.reach);
         let high = a.sup(&b).coords / self.cell_size + Vector::repeat(self.reach);
-        let columns = low.x.floor() as i64..=high.x.floor() as i64;
-        (low.y.floor() as i64..=high.y.floor() as i64).flat_map(move |j| columns.clone().map(move |i| (i, j)))
+        [low, high].map(|corner| [corner.x.floor() as i64, corner.y.floor() as i64])
     }
 
     /// Puts the segments of a line from `first` on into the buckets.
@@ -608,13 +666,15 @@ mod tests {
     }
 
     proptest! {
-        /// Truth: a division made at once. Cracks come, grow at both ends, turn and go.
+        /// Truth: a division made at once. Cracks come, grow at both ends, turn and go. What lies outside the boxes
+        /// that are told is divided as before.
         #[test]
         fn lines_put_in_the_place_of_others_divide_as_if_they_were_the_first(
             rounds in prop::collection::vec(
                 any_lines(prop_oneof![Just(LineEnd::Tip), Just(LineEnd::Open(1.0))]), 1..5,
             ),
             grown in prop::collection::vec((0_usize..4, any::<bool>(), any_point()), 0..12), cut in any_cut(),
+            pairs in prop::collection::vec(any_pair(), 60),
         ) {
             let mut changed = division(&[], TipDivision::PartlyCut, cut);
             let mut lines = Vec::new();
@@ -628,7 +688,12 @@ mod tests {
             }
             for by in grown {
                 grow(&mut lines, by);
-                changed.set_lines(lines.clone());
+                let before = changed.clone();
+                let boxes = changed.set_lines(lines.clone());
+                let is_outside = |p: Point| boxes.iter().all(|(low, high)| !(p >= *low && p <= *high));
+                for &(particle, node) in pairs.iter().filter(|pair| is_outside(pair.0)) {
+                    prop_assert_eq!(before.pair(particle, node), changed.pair(particle, node));
+                }
                 let fresh = division(&lines, TipDivision::PartlyCut, cut);
                 prop_assert_eq!(&changed.lines, &fresh.lines);
                 prop_assert_eq!(&changed.buckets, &fresh.buckets);

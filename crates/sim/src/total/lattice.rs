@@ -115,13 +115,15 @@ impl Lattice {
         })
     }
 
-    /// Divides pairs by `cracks` from now on.
-    pub(super) fn set_cracks(&mut self, cracks: &Cracks) {
+    /// Divides pairs by `cracks` from now on. Returns the boxes, from low to high corner [m], outside which particles
+    /// are divided as they were.
+    pub(super) fn set_cracks(&mut self, cracks: &Cracks) -> Vec<(Point, Point)> {
         let reach = self.reach();
         let lines = cracks.lines(|_, crack| crack.points_as_cut(), reach * self.grid.cell_size);
-        self.division.set_lines(lines);
+        let boxes = self.division.set_lines(lines);
         self.body_of_crack.clear();
         self.body_of_crack.extend(cracks.iter().map(|crack| crack.body));
+        boxes
     }
 
     /// The shares of a pair of `place`, which belongs to `body`, and a node at `node`. A crack goes on beyond its

@@ -307,13 +307,15 @@ impl Solver for Total {
 
     fn recut(&mut self, cracks: &Cracks, changed: &[TipId]) -> f64 {
         let points_before = self.probes.points_of_cracks();
-        let boxes = recut::changed_boxes(cracks, changed, self.lattice.grid.cell_size);
+        let mut boxes = self.lattice.set_cracks(cracks);
         let units = TieUnits::of(&self.lattice);
         let held = self.ties.held(&self.motion, units);
         let divides = changed.iter().any(|id| id.crack >= points_before.len());
-        let mut lost = self.lattice.recut(cracks, &boxes, divides, &mut self.motion);
+        let mut lost = self.lattice.recut(&boxes, divides, &mut self.motion);
         if changed.iter().any(|&id| cracks.end(id) != CrackEnd::Tip) {
-            lost += self.lattice.seat_more_riders(&boxes, &mut self.motion);
+            let around = recut::boxes_behind(cracks, changed, self.lattice.grid.cell_size);
+            lost += self.lattice.seat_more_riders(&around, &mut self.motion);
+            boxes.extend(around);
         }
         let has_mouthed = self.probes.refresh(&self.lattice, cracks, changed, &boxes);
         let near = Near::new(&self.lattice, &boxes, cracks, changed, &points_before);

@@ -17,8 +17,7 @@ use fissure_plane::{Matrix, Point, Vector, bounds};
 use fissure_scene::End;
 use std::collections::BTreeMap;
 
-/// Stencils are laid anew within so many cells of what has changed of a crack: the window of the division, the kernel,
-/// and some room.
+/// Particles that a crack leaves without hold as it comes to its end are looked for within so many cells of that.
 const REACH: f64 = 6.0;
 
 /// A strain that changes by less than this part of itself has not changed.
@@ -45,14 +44,13 @@ pub(super) struct WeightChange {
     pub(super) mass: f64,
 }
 
-/// The regions in which stencils may change when the ends `changed` have.
-pub(super) fn changed_boxes(cracks: &Cracks, changed: &[TipId], cell_size: f64) -> Vec<(Point, Point)> {
-    changed.iter().map(|&id| changed_box(cracks.of(id), id.end, cell_size)).collect()
+/// The regions around what the ends `changed` have left behind last.
+pub(super) fn boxes_behind(cracks: &Cracks, changed: &[TipId], cell_size: f64) -> Vec<(Point, Point)> {
+    changed.iter().map(|&id| box_behind(cracks.of(id), id.end, cell_size)).collect()
 }
 
-/// The region in which stencils may change.
-fn changed_box(crack: &Crack, end: End, cell_size: f64) -> (Point, Point) {
-    // The last few points: increments are a good part of a cell, and the old window ends two cells behind the old tip.
+fn box_behind(crack: &Crack, end: End, cell_size: f64) -> (Point, Point) {
+    // The last few points: increments are a good part of a cell.
     let n = crack.points.len().min(6);
     let (low, high) = match end {
         End::Start => bounds(&crack.points[..n]),
@@ -63,22 +61,15 @@ fn changed_box(crack: &Crack, end: End, cell_size: f64) -> (Point, Point) {
 }
 
 impl Lattice {
-    /// Divides the lattice by the cracks as they are now; stencils change within `boxes`. Returns the kinetic energy
-    /// that is lost where fields merge [J/m]. `divides`: a tip has become two.
-    pub(super) fn recut(
-        &mut self,
-        cracks: &Cracks,
-        boxes: &[(Point, Point)],
-        divides: bool,
-        motion: &mut Motion,
-    ) -> f64 {
-        self.set_cracks(cracks);
+    /// Lays stencils anew within `boxes`, where cracks divide otherwise than before. Returns the energy that is lost
+    /// [J/m]. `divides`: a tip has become two.
+    pub(super) fn recut(&mut self, boxes: &[(Point, Point)], divides: bool, motion: &mut Motion) -> f64 {
         let lost = self.recut_particles(boxes, divides, motion);
         self.invert_masses();
         lost
     }
 
-    /// Cuts the particles in `boxes` anew. Returns the kinetic energy that is lost [J/m].
+    /// Cuts the particles in `boxes` anew. Returns the energy that is lost [J/m].
     fn recut_particles(&mut self, boxes: &[(Point, Point)], divides: bool, motion: &mut Motion) -> f64 {
         let mut affected: Vec<usize> = Vec::new();
         for &(low, high) in boxes {

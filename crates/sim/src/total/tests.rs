@@ -296,7 +296,7 @@ fn a_tip_on_its_way_is_cut_as_it_was() {
         total.slide(&cracks, TIP);
         let (fields, mass) = (total.lattice.field_count(), total.lattice.mass().to_vec());
         let around = [(from - Vector::repeat(1.0), from + Vector::repeat(0.1))];
-        total.lattice.recut(&cracks, &around, false, &mut total.motion);
+        total.lattice.recut(&around, false, &mut total.motion);
         assert_eq!(total.lattice.field_count(), fields);
         assert_eq!(total.lattice.mass(), mass);
     }
