@@ -123,11 +123,15 @@ def surface_problems(mesh, attributes, triangles, materials):
     worst = numpy.abs(values(mesh.corner_normals, "vector", 3) - normal).max()
     if worst > NORMAL_TOLERANCE:
         problems.append(f"normals differ by {worst}")
-    texture = attributes["TEXCOORD_0"][corners] * [1, -1] + [0, 1]
-    if len(mesh.uv_layers) != 1:
-        problems.append(f"{len(mesh.uv_layers)} sets of texture coordinates instead of 1")
-    elif (worst := numpy.abs(values(mesh.uv_layers[0].uv, "vector", 2) - texture).max()) > TEXTURE_TOLERANCE:
-        problems.append(f"texture coordinates differ by {worst}")
+    sets = sorted(name for name in attributes if name.startswith("TEXCOORD_"))
+    if len(mesh.uv_layers) != len(sets):
+        return problems + [f"{len(mesh.uv_layers)} sets of texture coordinates instead of {len(sets)}"]
+    for layer, name in zip(mesh.uv_layers, sets):
+        texture = attributes[name][corners] * [1, -1] + [0, 1]
+        # Coordinates in metres may be large.
+        tolerance = TEXTURE_TOLERANCE * max(1.0, numpy.abs(texture).max())
+        if (worst := numpy.abs(values(layer.uv, "vector", 2) - texture).max()) > tolerance:
+            problems.append(f"texture coordinates {name} differ by {worst}")
     return problems
 
 

@@ -73,12 +73,17 @@ def usd_problems(stage, frame, expected):
             found["NORMAL"] = read(mesh.GetNormalsAttr())
             found["indices"] = read(mesh.GetFaceVertexIndicesAttr())
             found["TEXCOORD_0"] = read(UsdGeom.PrimvarsAPI(prim).GetPrimvar("st"))
-            want = {**want, "TEXCOORD_0": [0, 1] + want["TEXCOORD_0"] * [1, -1]}
+            if (metres := UsdGeom.PrimvarsAPI(prim).GetPrimvar("st1")).HasValue():
+                found["TEXCOORD_1"] = read(metres)
+            sets = [name for name in want if name.startswith("TEXCOORD_")]
+            want = {**want, **{name: [0, 1] + want[name] * [1, -1] for name in sets}}
+            if set(sets) - set(found):
+                problems.append(f"{key}: {sorted(set(sets) - set(found))} are missing")
             if set(read(mesh.GetFaceVertexCountsAttr())) != {3} or mesh.GetNormalsInterpolation() != "vertex":
                 problems.append(f"{key}: no triangles with a normal for each vertex")
         for name, values in found.items():
             # 1 − (1 − v) is not v to the bit.
-            tolerance = 1e-7 if name == "TEXCOORD_0" else 0.0
+            tolerance = 1e-7 * max(1.0, numpy.abs(want[name]).max()) if name.startswith("TEXCOORD_") else 0.0
             if values.shape != want[name].shape or numpy.abs(values - want[name]).max() > tolerance:
                 problems.append(f"{key}: {name} differs")
         low, high = read(shape.GetExtentAttr())

@@ -68,6 +68,7 @@ fn collider_mesh(
     let area = 0.5 * shapes.iter().flatten().map(|c| twice_area(c)).sum::<i128>() as f64 * grid.step * grid.step;
     let content = Content::Solid { area, thickness: options.thickness, slack: 0.0 };
     let mut mesh = Mesh::new(object_name(&collider.name, "collider", index), index, content);
+    mesh.texture_size = options.uv_in_metres.then_some(extrusion.texture_size);
     shapes.iter().for_each(|shape| extrusion.solid(&triangulate(shape, Division::Plain), &[], &mut mesh));
     let defect = |defect| PostError::Defect { frame: frame.number, mesh: mesh.name.clone(), defect };
     mesh.check().map_err(defect)?;

@@ -300,6 +300,7 @@ impl<'a> Solids<'a> {
         let area = caps.iter().map(|(cap, _)| area(&cap.shape, extrusion.grid)).sum();
         let name = object_name(&self.names[body as usize], "piece", piece);
         let mut mesh = Mesh::new(name, piece, Content::Solid { area, thickness: self.options.thickness, slack: 0.0 });
+        mesh.texture_size = self.options.uv_in_metres.then_some(extrusion.texture_size);
         caps.iter().for_each(|(cap, within)| extrusion.solid(cap, within, &mut mesh));
         (!caps.is_empty()).then_some(mesh)
     }

@@ -44,6 +44,7 @@ fn face_mesh(scene: &Scene, crack: &CrackFrame, options: &PostOptions, relief: O
     };
     let name = object_name(&body_names(scene)[crack.body as usize], "crack", crack.crack);
     let mut mesh = Mesh::new(name, crack.crack, Content::Surface);
+    mesh.texture_size = options.uv_in_metres.then_some(extrusion.texture_size);
     // Without the two closing edges, which lie in the opening and not on a face.
     let count = crack.rest.len();
     for face in [0..count.saturating_sub(1), count..(2 * count).saturating_sub(1)] {

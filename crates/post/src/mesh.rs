@@ -46,6 +46,8 @@ pub struct Mesh {
     pub piece: u32,
     /// What it is made of.
     pub content: Content,
+    /// Length of a unit of the texture coordinates at rest [m], where they are written in metres too.
+    pub texture_size: Option<f64>,
     /// Vertices.
     pub vertices: Vec<Vertex>,
     /// Triangles by slot, counter-clockwise from outside.
@@ -55,7 +57,7 @@ pub struct Mesh {
 impl Mesh {
     /// An empty mesh.
     pub(crate) fn new(name: String, piece: u32, content: Content) -> Self {
-        Self { name, piece, content, vertices: Vec::new(), triangles: [Vec::new(), Vec::new()] }
+        Self { name, piece, content, texture_size: None, vertices: Vec::new(), triangles: [Vec::new(), Vec::new()] }
     }
 
     /// The mesh moved in the drawing plane [m].

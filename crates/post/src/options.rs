@@ -27,6 +27,8 @@ pub struct PostOptions {
     pub shortest_edge: f64,
     /// How rough the walls of cracks are; none: smooth.
     pub roughness: Option<Roughness>,
+    /// Whether meshes have a second set of texture coordinates, in metres.
+    pub uv_in_metres: bool,
     /// Length of the edges within caps, at most; none: as long as may be [m].
     pub cap_size: Option<f64>,
     /// How wide cracks are shown; none: as they are.
@@ -52,6 +54,7 @@ impl From<&OutputSettings> for PostOptions {
             opening: output.opening.clone(),
             explode: output.explode.clone(),
             roughness: output.surfaces.roughness,
+            uv_in_metres: output.surfaces.uv_in_metres,
             shortest_edge: SHORTEST_EDGE,
             cap_size: output.surfaces.cap_size,
             parts: output.parts.clone(),

@@ -12,6 +12,13 @@ pub(crate) struct PackedVertex {
     pub(crate) velocity: [f32; 3],
 }
 
+impl PackedVertex {
+    /// Texture coordinates in metres, v upwards; `size` is the length of a unit of them [m].
+    pub(crate) fn metres(&self, size: f64) -> [f32; 2] {
+        self.texture.map(|x| (f64::from(x) * size) as f32)
+    }
+}
+
 /// How positions and velocities are written.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Convention {

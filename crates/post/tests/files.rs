@@ -6,7 +6,7 @@ mod common;
 use common::{halves, options};
 use fissure_files::Folder;
 use fissure_post::{
-    FileRecord, FrameMeshes, Manifest, Sequences, WriteError, post_frame, write_companions, write_frame,
+    FileRecord, FrameMeshes, Manifest, PostOptions, Sequences, WriteError, post_frame, write_companions, write_frame,
 };
 use fissure_scene::{Format, Frame, Part, Scene, UpAxis, Vector};
 use ply_rs_bw::parser::Parser;
@@ -127,6 +127,49 @@ fn a_ply_file_holds_what_the_mesh_holds() {
     }
     assert_eq!(row, faces.len());
     assert!(ply.header.comments.iter().any(|c| c.contains(&"0".repeat(64))));
+}
+
+/// Truth: what has not moved is as large in texture coordinates in metres as it is, side by side of all triangles.
+#[test]
+fn texture_coordinates_in_metres_are_as_long_as_the_sides() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut sample = sample(1);
+    let options = PostOptions { uv_in_metres: true, ..options(&sample.scene) };
+    sample.meshes = post_frame(&sample.scene, &sample.frame, &options).unwrap();
+    let records = sample.write(&Folder::new(folder.path()), &[Format::Glb, Format::Ply]).unwrap();
+    let is_as_long = |places: [[f32; 3]; 3], metres: [[f32; 2]; 3]| {
+        let length = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f32>().sqrt();
+        (0..3).all(|k| {
+            let next = (k + 1) % 3;
+            (length(&places[k], &places[next]) - length(&metres[k], &metres[next])).abs() < 1e-4
+        })
+    };
+    let (document, buffers, _) = gltf::import(&records[0].path).unwrap();
+    let still = document.nodes().find(|node| node.name() == Some("plate_piece_0000")).unwrap();
+    let mut count = 0;
+    for primitive in still.mesh().unwrap().primitives() {
+        let reader = primitive.reader(|b| Some(&buffers[b.index()]));
+        let positions: Vec<[f32; 3]> = reader.read_positions().unwrap().collect();
+        let metres: Vec<[f32; 2]> = reader.read_tex_coords(1).unwrap().into_f32().collect();
+        let indices: Vec<usize> = reader.read_indices().unwrap().into_u32().map(|i| i as usize).collect();
+        for t in indices.chunks(3) {
+            assert!(is_as_long([0, 1, 2].map(|k| positions[t[k]]), [0, 1, 2].map(|k| metres[t[k]])));
+            count += 1;
+        }
+    }
+    assert_eq!(count, sample.meshes.parts[0].1[0].triangle_count());
+    let bytes = std::fs::read(&records[1].path).unwrap();
+    let ply = Parser::<DefaultElement>::new().read_ply(&mut bytes.as_slice()).unwrap();
+    let floats = |vertex: &DefaultElement, names: &[&str]| -> Vec<f32> {
+        let float = |name: &&str| if let Property::Float(x) = vertex[*name] { x } else { f32::NAN };
+        names.iter().map(float).collect()
+    };
+    for face in ply.payload["face"].iter().take(count) {
+        let Property::ListInt(corners) = &face["vertex_indices"] else { panic!("not a list") };
+        let vertices = [0, 1, 2].map(|k| &ply.payload["vertex"][corners[k] as usize]);
+        let places = vertices.map(|v| floats(v, &["x", "y", "z"]).try_into().unwrap());
+        assert!(is_as_long(places, vertices.map(|v| floats(v, &["s1", "t1"]).try_into().unwrap())));
+    }
 }
 
 #[test]

@@ -409,6 +409,8 @@ pub struct SurfaceSettings {
     pub smoothing: f64,
     /// How rough the walls of cracks are shown; none: as the cracks are.
     pub roughness: Option<Roughness>,
+    /// Whether meshes have a second set of texture coordinates, in metres.
+    pub uv_in_metres: bool,
 }
 
 /// How rough the walls of cracks are shown.
@@ -424,7 +426,7 @@ pub struct Roughness {
 
 impl Default for SurfaceSettings {
     fn default() -> Self {
-        Self { cap_size: None, cut: Cut::default(), smoothing: SMOOTHING, roughness: None }
+        Self { cap_size: None, cut: Cut::default(), smoothing: SMOOTHING, roughness: None, uv_in_metres: false }
     }
 }
 

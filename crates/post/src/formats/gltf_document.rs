@@ -136,6 +136,11 @@ impl Document {
         let texture = self.floats(texture, vertices.len(), Type::Vec2);
         attributes.insert(Valid(Semantic::Normals), normals);
         attributes.insert(Valid(Semantic::TexCoords(0)), texture);
+        if let Some(size) = mesh.texture_size {
+            let metres = vertices.iter().map(|v| v.metres(size)).flat_map(|[u, v]| [u, 1.0 - v]);
+            let metres = self.floats(metres, vertices.len(), Type::Vec2);
+            attributes.insert(Valid(Semantic::TexCoords(1)), metres);
+        }
         let mut indices = Vec::with_capacity(12 * triangles.len());
         triangles.iter().flatten().for_each(|i| indices.extend(i.to_le_bytes()));
         let indices = self.accessor(

@@ -14,6 +14,8 @@ use ply_rs_bw::writer::Writer;
 
 /// Vertex properties of triangle meshes, all `float`, by the names that programs look for.
 const MESH_PROPERTIES: [&str; 13] = ["x", "y", "z", "nx", "ny", "nz", "s", "t", "vx", "vy", "vz", "piece", "slot"];
+/// Those of the second set of texture coordinates.
+const METRES: [&str; 2] = ["s1", "t1"];
 /// Vertex properties of points.
 const POINT_PROPERTIES: [&str; 7] = ["x", "y", "z", "vx", "vy", "vz", "piece"];
 
@@ -26,9 +28,11 @@ const POINT_PROPERTIES: [&str; 7] = ["x", "y", "z", "vx", "vy", "vz", "piece"];
 /// When the writer refuses, which for a buffer in memory means a mistake of ours.
 fn bytes(meshes: &[Mesh], provenance: &Provenance, convention: Convention) -> Result<Vec<u8>, FormatError> {
     let points_only = !meshes.is_empty() && meshes.iter().all(|m| m.content == Content::Points);
-    let mut rows = Rows { points_only, ..Rows::default() };
+    let metres = meshes.iter().any(|mesh| mesh.texture_size.is_some());
+    let mut rows = Rows { points_only, metres, ..Rows::default() };
     meshes.iter().for_each(|mesh| rows.add(mesh, convention));
-    let names: &[&str] = if points_only { &POINT_PROPERTIES } else { &MESH_PROPERTIES };
+    let mut names = if points_only { POINT_PROPERTIES.to_vec() } else { MESH_PROPERTIES.to_vec() };
+    names.extend(METRES.iter().filter(|_| rows.metres));
     let mut header = Header::new();
     header.encoding = Encoding::BinaryLittleEndian;
     header.comments = comments(provenance);
@@ -86,6 +90,8 @@ fn comments(provenance: &Provenance) -> Vec<String> {
 struct Rows {
     /// Whether vertices have no normals, texture coordinates and slots.
     points_only: bool,
+    /// Whether they have a second set of texture coordinates, in metres.
+    metres: bool,
     vertices: Vec<u8>,
     vertex_count: usize,
     faces: Vec<u8>,
@@ -96,13 +102,13 @@ impl Rows {
     /// Adds vertices and faces of `mesh`; the vertices of each slot are its own, so that each has one slot.
     fn add(&mut self, mesh: &Mesh, convention: Convention) {
         if mesh.content == Content::Points {
-            mesh.vertices.iter().for_each(|vertex| self.vertex(&pack(vertex, convention), mesh.piece, 0));
+            mesh.vertices.iter().for_each(|vertex| self.vertex(&pack(vertex, convention), mesh, 0));
             return;
         }
         for slot in Slot::ALL {
             let first = self.vertex_count as u32;
             let (vertices, triangles) = compact(mesh, mesh.slot(slot), convention);
-            vertices.iter().for_each(|vertex| self.vertex(vertex, mesh.piece, slot as u8));
+            vertices.iter().for_each(|vertex| self.vertex(vertex, mesh, slot as u8));
             for triangle in &triangles {
                 self.faces.push(3);
                 triangle.iter().for_each(|i| self.faces.extend((first + i).to_le_bytes()));
@@ -111,7 +117,7 @@ impl Rows {
         }
     }
 
-    fn vertex(&mut self, vertex: &PackedVertex, piece: u32, slot: u8) {
+    fn vertex(&mut self, vertex: &PackedVertex, mesh: &Mesh, slot: u8) {
         let mut floats = |values: &[f32]| values.iter().for_each(|value| self.vertices.extend(value.to_le_bytes()));
         floats(&vertex.position);
         if !self.points_only {
@@ -119,9 +125,12 @@ impl Rows {
             floats(&vertex.texture);
         }
         floats(&vertex.velocity);
-        floats(&[piece as f32]);
+        floats(&[mesh.piece as f32]);
         if !self.points_only {
             floats(&[f32::from(slot)]);
+        }
+        if self.metres {
+            floats(&vertex.metres(mesh.texture_size.unwrap_or(1.0)));
         }
         self.vertex_count += 1;
     }

@@ -99,6 +99,11 @@ fn object(text: &mut String, mesh: &Mesh, place: Place<'_>, particle_spacing: f6
             continue;
         }
         mesh_opening(text, &format!("{name}_{}", slot.name()), slot, root);
+        if let Some(size) = mesh.texture_size {
+            text.push_str(METRES);
+            let metres = vertices.iter().map(|v| v.metres(size));
+            samples(text, "texCoord2f[] primvars:st1", number, |t| join_tuples(t, metres));
+        }
         motion(text, &vertices, number);
         samples(text, "normal3f[] normals", number, |t| join_tuples(t, vertices.iter().map(|v| v.normal)));
         samples(text, "texCoord2f[] primvars:st", number, |t| join_tuples(t, vertices.iter().map(|v| v.texture)));
@@ -108,6 +113,10 @@ fn object(text: &mut String, mesh: &Mesh, place: Place<'_>, particle_spacing: f6
     }
     text.push_str("    }\n");
 }
+
+/// The second set of texture coordinates, in metres.
+const METRES: &str =
+    "            texCoord2f[] primvars:st1 (\n                interpolation = \"vertex\"\n            )\n";
 
 /// The beginning of the mesh `name` with what does not change from frame to frame.
 fn mesh_opening(text: &mut String, name: &str, slot: Slot, root: &str) {
@@ -191,6 +200,7 @@ mod stage {
     pub(super) fn companions(listing: &Listing<'_>) -> Vec<(String, Vec<u8>)> {
         let root = identifier(listing.name);
         let objects = objects(listing);
+        let metres = listing.scene.output.surfaces.uv_in_metres;
         let stage = format!("{}.usda", listing.name);
         let clips = format!("{}.clips.usda", listing.name);
         let frames = listing.records.iter().map(|record| record.frame);
@@ -207,7 +217,7 @@ mod stage {
         text.push_str("]\n            double2[] times = [");
         join_tuples(&mut text, listing.records.iter().map(|record| [record.frame; 2]));
         text.push_str("]\n        }\n    }\n)\n{\n");
-        declare(&mut text, &root, &objects, Declared::InStage);
+        declare(&mut text, &root, &objects, Declared::InStage, metres);
         if objects.values().any(|object| !object.materials.is_empty()) {
             materials(&mut text, &root);
         }
@@ -215,7 +225,7 @@ mod stage {
 
         let mut manifest = header(&origin, Some(&root), ends, &listing.scene.frames);
         let _ = writeln!(manifest, "over \"{root}\"\n{{");
-        declare(&mut manifest, &root, &objects, Declared::InManifest);
+        declare(&mut manifest, &root, &objects, Declared::InManifest, metres);
         manifest.push_str("}\n");
         vec![(stage, text.into_bytes()), (clips, manifest.into_bytes())]
     }
@@ -247,8 +257,14 @@ mod stage {
         InManifest,
     }
 
-    /// Declares all attributes of all objects that change from frame to frame.
-    fn declare(text: &mut String, root: &str, objects: &BTreeMap<String, ObjectRecord>, declared: Declared) {
+    /// Declares all attributes of all objects that change from frame to frame; `metres`: texture coordinates too.
+    fn declare(
+        text: &mut String,
+        root: &str,
+        objects: &BTreeMap<String, ObjectRecord>,
+        declared: Declared,
+        metres: bool,
+    ) {
         let empty = if declared == Declared::InManifest { " = []" } else { "" };
         let specifier = if declared == Declared::InManifest { "over" } else { "def" };
         let moving = ["float3[] extent", "point3f[] points", "vector3f[] velocities"];
@@ -269,9 +285,11 @@ mod stage {
             for slot in Slot::ALL.into_iter().filter(|slot| object.materials.iter().any(|m| m == slot.name())) {
                 if declared == Declared::InStage {
                     mesh_opening(text, &format!("{name}_{}", slot.name()), slot, root);
+                    text.push_str(if metres { METRES } else { "" });
                 } else {
                     let _ = writeln!(text, "        over \"{name}_{}\"\n        {{", slot.name());
                     text.push_str("            normal3f[] normals = []\n            texCoord2f[] primvars:st = []\n");
+                    text.push_str(if metres { "            texCoord2f[] primvars:st1 = []\n" } else { "" });
                 }
                 for attribute in moving.iter().chain(&["int[] faceVertexCounts", "int[] faceVertexIndices"]) {
                     let _ = writeln!(text, "            {attribute}{empty}");

@@ -131,6 +131,7 @@ mod tests {
             name: "plate_piece_0007".to_owned(),
             piece: 7,
             content: Content::Surface,
+            texture_size: None,
             vertices: (0..50).map(vertex).collect(),
             triangles: [(0..40).map(triangle).collect(), (40..60).map(triangle).collect()],
         }

@@ -242,6 +242,8 @@ pub struct OutputKeys {
     pub smoothing: f64,
     /// How rough the walls of cracks are shown. Default: as the cracks are.
     pub roughness: Option<RoughnessKeys>,
+    /// Whether meshes have a second set of texture coordinates, in metres at rest, in GLB, PLY and USD. Default: false.
+    pub uv_in_metres: bool,
     /// How wide cracks are shown. Default: as they are.
     pub opening: Option<OpeningKeys>,
     /// How far fragments are shown apart. Default: where they are.
@@ -249,17 +251,16 @@ pub struct OutputKeys {
 }
 
 /// How rough the walls of cracks are shown: both faces of a crack alike, less towards the caps, outlines and tips.
-#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
 pub struct RoughnessKeys {
-    /// Most that a wall is moved in m: half a cell at most.
+    /// Most that a wall is moved in m: half a cell at most. Default: a fifth of a cell.
     #[schemars(transform = LENGTH.bounds())]
-    pub amplitude: f64,
+    pub amplitude: Option<f64>,
     /// Length in m over which a wall is moved about alike: four amplitudes or more. Default: ten amplitudes.
     #[schemars(transform = LENGTH.bounds())]
     pub length: Option<f64>,
     /// Number that stands for one relief. Default: 0.
-    #[serde(default)]
     pub seed: u64,
 }
 
@@ -311,6 +312,7 @@ impl Default for OutputKeys {
             cut: Cut::default(),
             smoothing: SMOOTHING,
             roughness: None,
+            uv_in_metres: false,
             opening: None,
             explode: None,
         }

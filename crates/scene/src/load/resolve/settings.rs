@@ -116,7 +116,8 @@ impl<'d> Resolver<'d> {
                 cap_size: keys.cap_size,
                 cut: keys.cut,
                 smoothing: keys.smoothing,
-                roughness: keys.roughness.as_ref().map(roughness),
+                roughness: keys.roughness.as_ref().map(|keys| roughness(keys, cell_size)),
+                uv_in_metres: keys.uv_in_metres,
             },
             opening: keys.opening.as_ref().map(|keys| opening(keys, frames, cell_size)).transpose()?,
             explode: keys.explode.as_ref().map(|keys| explode(keys, frames)).transpose()?,
@@ -124,11 +125,14 @@ impl<'d> Resolver<'d> {
     }
 }
 
+/// Amplitude of a relief, unless the scene says otherwise, in cells.
+const RELIEF_HEIGHT: f64 = 0.2;
 /// Length of a relief, unless the scene says otherwise, in amplitudes.
 const RELIEF_LENGTH: f64 = 10.0;
 
-fn roughness(keys: &RoughnessKeys) -> Roughness {
+fn roughness(keys: &RoughnessKeys, cell_size: f64) -> Roughness {
     let RoughnessKeys { amplitude, length, seed } = *keys;
+    let amplitude = amplitude.unwrap_or(RELIEF_HEIGHT * cell_size);
     Roughness { amplitude, length: length.unwrap_or(RELIEF_LENGTH * amplitude), seed }
 }
 
