@@ -11,7 +11,7 @@ FOLDER holds the files of `fissure post OUT/NAME.take --formats glb,obj,usda,vtk
   file of a frame by itself says the same.
 - VTK: its own reader reads surfaces with as many triangles as the manifest says, and of its volume within 1e-5 (which
   the reader sums in single precision); it and meshio read the particles of the take, to the bit; the list names the times.
-- OBJ: trimesh reads each object, of the volume of the GLB file within 1e-6.
+- OBJ: trimesh reads each object, of the volume of the GLB file within 1e-6, and closed.
 - SVG: the fragments have the area of the manifest within 1e-6.
 """
 
@@ -165,6 +165,10 @@ def check_obj(folder, records):
             volume = sum(mesh.volume for mesh in scene.geometry.values())
             if not abs(volume / record["volume"] - 1) <= RELATIVE:
                 yield record["file"], f"volume {volume} instead of {record['volume']}"
+            for name, mesh in scene.geometry.items():
+                mesh.merge_vertices(merge_tex=True, merge_norm=True)
+                if not mesh.is_watertight:
+                    yield record["file"], f"{name} is open"
 
 
 def check_svg(folder, records):

@@ -174,6 +174,32 @@ impl<'a> Pictures<'a> {
     }
 }
 
+/// Removes pictures of a run of `scene` that lie in `folder` and that say themselves that Fissure made them. All other
+/// files stay.
+///
+/// # Errors
+/// When the folder cannot be read, or a file cannot be removed.
+pub(crate) fn remove_pictures(folder: &Folder, scene: &Scene) -> Result<(), Failure> {
+    let kind = |name: &str| {
+        let number = name.strip_prefix(&format!("{}.", scene.name)).and_then(|rest| rest.strip_suffix(".png"));
+        let is_frame = number.is_some_and(|number| number.parse().is_ok_and(|n| frame_name(scene, n) == name));
+        match name {
+            _ if is_frame || name == sheet_name(scene) => Some(Kind::Png),
+            _ if name == animation_name(scene) => Some(Kind::Gif),
+            _ if name == page_name(scene) => Some(Kind::Html),
+            _ => None,
+        }
+    };
+    for name in folder.names()? {
+        if let Some(kind) = kind(&name)
+            && folder.read(&name)?.is_some_and(|there| is_ours(kind, &there))
+        {
+            folder.remove(&name)?;
+        }
+    }
+    Ok(())
+}
+
 fn frame_name(scene: &Scene, number: i64) -> String {
     format!("{}.{number:04}.png", scene.name)
 }

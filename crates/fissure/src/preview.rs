@@ -16,7 +16,7 @@ use fissure_scene::{HeldParticles, Take};
 use std::sync::{Mutex, PoisonError};
 
 /// Folder of the pictures, in that of the take.
-const FOLDER: &str = "preview";
+pub(crate) const FOLDER: &str = "preview";
 
 /// Draws pictures of a take.
 pub(crate) fn preview(arguments: &PreviewArguments, interrupt: &Interrupt, report: &Report) -> Result<Exit, Failure> {

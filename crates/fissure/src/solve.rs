@@ -8,10 +8,12 @@ use crate::frame_set::FrameSet;
 use crate::interrupt::Interrupt;
 use crate::invocation;
 use crate::moved::Moved;
+use crate::pictures::remove_pictures;
+use crate::preview;
 use crate::progress::SimulationProgress;
 use crate::report::Report;
 use crate::tables::Tables;
-use fissure_files::{Lock, LockError};
+use fissure_files::{Folder, Lock, LockError};
 use fissure_post::Manifest;
 use fissure_scene::{Frame, Opened, Provenance, Scene, Start, TakeError, TakeWriter};
 use fissure_sim::{Simulation, SimulationError};
@@ -68,6 +70,7 @@ pub(crate) fn open(
     let (writer, start) = if arguments.overwrite {
         let _meshes = folder.lock_meshes()?;
         Manifest::remove_meshes(&folder.root, &scene.name)?;
+        remove_pictures(&Folder::new(folder.root.path().join(preview::FOLDER)), scene)?;
         (TakeWriter::replace(&folder.take, scene, provenance())?, Start::First)
     } else {
         let Opened { writer, start, remarks } = TakeWriter::open(&folder.take, scene, provenance(), last)?;

@@ -342,8 +342,11 @@ fn a_take_of_another_scene_is_kept_unless_told_otherwise() {
 #[test]
 fn overwrite_removes_the_meshes_of_the_run_before_and_nothing_else() {
     let folder = workplace();
-    expect(&run(folder.path(), &["run", "plate.toml", "--frames", "1-4", "--formats", "glb"]), 0);
-    for precious in ["plate.0099.glb", "plate.take/thesis.txt"] {
+    expect(&run(folder.path(), &["run", "plate.toml", "--frames", "1-4", "--formats", "glb", "--preview"]), 0);
+    let drawn = ["plate.0004.png", "plate_sheet.png", "plate.gif", "plate.html"]
+        .map(|name| format!("out/plate/preview/{name}"));
+    assert!(drawn.iter().all(|name| names(folder.path()).contains(name)), "{:?}", names(folder.path()));
+    for precious in ["plate.0099.glb", "plate.take/thesis.txt", "preview/plate.0099.png", "preview/plate.1.png"] {
         std::fs::write(folder.path().join("out/plate").join(precious), "years of work").unwrap();
     }
     let again = ["run", "plate.toml", "--frames", "1-2", "--formats", "ply", "--overwrite"];
@@ -351,8 +354,9 @@ fn overwrite_removes_the_meshes_of_the_run_before_and_nothing_else() {
     let left = names(folder.path());
     assert!(!left.contains(&"out/plate/plate.0001.glb".to_owned()), "{left:?}");
     assert!(!left.contains(&"out/plate/plate.take/frame.0003.safetensors".to_owned()), "{left:?}");
-    for precious in ["out/plate/plate.0099.glb", "out/plate/plate.take/thesis.txt"] {
-        assert_eq!(std::fs::read(folder.path().join(precious)).unwrap(), b"years of work");
+    assert!(drawn.iter().all(|name| !left.contains(name)), "{left:?}");
+    for precious in ["plate.0099.glb", "plate.take/thesis.txt", "preview/plate.0099.png", "preview/plate.1.png"] {
+        assert_eq!(std::fs::read(folder.path().join("out/plate").join(precious)).unwrap(), b"years of work");
     }
 }
 
