@@ -11,9 +11,9 @@ pub(crate) trait Solver: Snapshot + Observed + std::fmt::Debug + Send {
     /// Largest stable time step for the present state [s].
     fn stable_time_step(&self) -> f64;
 
-    /// An upper bound of [`Solver::stable_time_step`] that costs little, to be asked at every step; none where only the
-    /// full computation can tell.
-    fn moving_time_step(&self) -> Option<f64>;
+    /// What [`Solver::stable_time_step`] is by now, as well as can be told at little cost; `planned`: what it was when the
+    /// run began [s]. None where it has not moved.
+    fn moving_time_step(&self, planned: f64) -> Option<f64>;
 
     /// Goes from `time` to `time` + `time_step`. `observe` is called in mid-step, when displacements, velocities and
     /// accelerations belong to one moment.

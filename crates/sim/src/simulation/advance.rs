@@ -132,7 +132,7 @@ impl Simulation {
 
     /// Whether the stable step is no longer what the steps were planned by.
     fn limit_has_moved(&self) -> bool {
-        let Some(now) = self.solver.moving_time_step() else { return false };
+        let Some(now) = self.solver.moving_time_step(self.stable_time_step) else { return false };
         let change = now / self.stable_time_step;
         let rises = self.formulation == Formulation::Updated && change > 1.0 + LIMIT_SLACK;
         // NaN counts as moved.

@@ -26,8 +26,12 @@ impl Simulation {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use crate::Elastic;
     use crate::test_scenes::{add_crack, free_body, rectangle, set_motion};
-    use fissure_scene::{Collider, ColliderShape, Contact, Kernel, Matrix, Point, Pose, Scene, Selection, Vector};
+    use fissure_scene::{
+        BoxSide, Collider, ColliderShape, Contact, Curve, Kernel, Matrix, Point, Pose, Scene, Selection, Support,
+        Vector,
+    };
 
     /// A cracked block that flies, turns and swings.
     fn block() -> Scene {
@@ -77,6 +81,57 @@ mod tests {
         let still = |m: &Matrix| (m - Matrix::identity()).norm() < 1.0;
         simulation.one_step(1e-4, true).unwrap();
         assert!(simulation.frame().particles.deformation_gradient.iter().all(still));
+    }
+
+    /// Truth: the closed form of a bar that is drawn out evenly, free to become thinner: with Ψ = μ|F − R|² + λ(J−1)²/2
+    /// the stretch across is t = (2μ + λs)/(2μ + λs²).
+    #[test]
+    fn a_bar_drawn_out_goes_on_with_its_energy_and_stress() {
+        let (length, height) = (6.0, 2.0);
+        for stretch in [1.1, 1.5, 1.8] {
+            let mut scene = free_body(rectangle([0.0, 0.0], [length, height]), 0.25);
+            scene.solver.formulation = Formulation::Total;
+            scene.solver.on_distortion = OnDistortion::Switch;
+            scene.solver.kernel = Kernel::Bilinear;
+            let elastic = Elastic::new(&scene.materials[0], scene.plane);
+            let wave = elastic.dilatational_wave_speed();
+            scene.solver.damping = wave / length;
+            let drawn = (stretch - 1.0) * length / (0.05 * wave);
+            for (side, velocity) in [(BoxSide::Left, 0.0), (BoxSide::Right, 0.05 * wave)] {
+                scene.supports.push(Support {
+                    selection: Selection::Edge { side, bodies: None },
+                    velocity: [Some(velocity), None],
+                    curve: Curve { points: vec![(0.0, 1.0), (drawn, 1.0), (drawn * (1.0 + 1e-9), 0.0)] },
+                });
+            }
+            scene.frames.last = scene.frames.first + 2;
+            scene.frames.rate = 1.0 / (drawn + 4.0 * length / wave);
+            let mut simulation = Simulation::new(&scene).unwrap();
+            simulation.advance(&mut |_| std::ops::ControlFlow::Continue(())).unwrap();
+            let (mu, lambda) = (elastic.mu, elastic.lambda);
+            let across = (2.0 * mu + lambda * stretch) / (2.0 * mu + lambda * stretch * stretch);
+            let gradient = Matrix::new(stretch - 1.0, 0.0, 0.0, across - 1.0);
+            let energy = length * height * crate::energy_density(&gradient, mu, lambda);
+            let stress = crate::first_piola_stress(&gradient, mu, lambda);
+            // Strain and kinetic energy, and the pull along the bar, by the closed form.
+            let found = |simulation: &Simulation| {
+                let gradients = simulation.frame().particles.deformation_gradient;
+                let pull = |f: &Matrix| crate::first_piola_stress(&(f - Matrix::identity()), mu, lambda).m11;
+                let pull = gradients.iter().map(pull).sum::<f64>() / gradients.len() as f64;
+                let energies = simulation.energies();
+                [energies.strain / energy, pull / stress.m11, energies.kinetic / energy]
+            };
+            let [strain, pull, kinetic] = found(&simulation);
+            assert!((strain - 1.0).abs() < 2e-3 && (pull - 1.0).abs() < 2e-3 && kinetic < 1e-3, "{strain} {pull}");
+            let error = SimulationError::OutOfRange { time: 0.0, x: 0.0, y: 0.0, cause: String::new() };
+            simulation.switch_formulation(error).unwrap();
+            let [strain_now, pull_now, kinetic_now] = found(&simulation);
+            assert!((strain_now - strain).abs() < 1e-12 && (pull_now - pull).abs() < 1e-12 && kinetic_now <= kinetic);
+            // The grid of the other formulation moves it a little, wherever the particles are on it.
+            simulation.one_step(0.5 * simulation.solver.stable_time_step(), false).unwrap();
+            let [strain, pull, kinetic] = found(&simulation);
+            assert!((strain - 1.0).abs() < 1e-2 && (pull - 1.0).abs() < 1e-2 && kinetic < 2e-3, "{strain} {pull}");
+        }
     }
 
     /// A block that is thrown against a wall faster than the total formulation can follow goes on in the other one;

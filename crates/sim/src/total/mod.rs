@@ -34,6 +34,7 @@ mod rows;
 mod run;
 mod snapshot;
 mod stability;
+mod stiffening;
 mod supports;
 mod surfaces;
 #[cfg(test)]
@@ -61,6 +62,7 @@ use motion::Motion;
 use near::Near;
 use probes::Probes;
 use std::sync::Arc;
+use stiffening::Stiffening;
 use supports::{HeldStep, Supports};
 use tie::TieUnits;
 use ties::Ties;
@@ -88,6 +90,7 @@ pub(crate) struct Total {
     power_of_gravity: f64,
     /// What each support has done so far.
     reactions: Vec<Reaction>,
+    stiffening: Stiffening,
     steps_since_check: u32,
 }
 
@@ -158,6 +161,7 @@ impl Total {
         (motion, probes, ties, impulses, done): (Motion, Probes, Ties, LastImpulses, Done),
         cracks: &Cracks,
     ) -> Result<Self, SimulationError> {
+        let stiffening = Stiffening::new(&lattice.materials);
         let friction = scene.solver.crack_contact.then_some(scene.solver.crack_friction);
         Ok(Self {
             damping: scene.solver.damping,
@@ -175,6 +179,7 @@ impl Total {
             power_of_loads: done.0[1],
             power_of_gravity: done.0[2],
             reactions: done.1,
+            stiffening,
             steps_since_check: 0,
         })
     }
@@ -236,7 +241,18 @@ impl Total {
             return Ok(());
         }
         self.steps_since_check = 0;
-        self.check(time)
+        if range::check_range(&self.lattice, &self.motion, time, self.stiffening.calm())? {
+            self.stiffening.rest();
+        } else {
+            self.look_at_stretch();
+        }
+        Ok(())
+    }
+
+    /// Sees how much the stretched material is stiffened.
+    fn look_at_stretch(&mut self) {
+        let Self { lattice, motion, stiffening, .. } = self;
+        stiffening.look(&lattice.layout.runs, &motion.displacement, lattice.grid.cell_size);
     }
 }
 
@@ -248,11 +264,11 @@ fn internal_forces(lattice: &Lattice, ties: &Ties, u: &FieldVectors, force: &mut
 
 impl Solver for Total {
     fn stable_time_step(&self) -> f64 {
-        stability::largest_time_step(&self.lattice)
+        stability::largest_time_step(&self.lattice) * self.stiffening.part_of_step()
     }
 
-    fn moving_time_step(&self) -> Option<f64> {
-        None
+    fn moving_time_step(&self, planned: f64) -> Option<f64> {
+        self.stiffening.change().map(|change| planned * change)
     }
 
     fn step(
@@ -302,7 +318,7 @@ impl Solver for Total {
     }
 
     fn check(&self, time: f64) -> Result<(), SimulationError> {
-        range::check_range(&self.lattice, &self.motion, time)
+        range::check_range(&self.lattice, &self.motion, time, self.stiffening.calm()).map(drop)
     }
 
     fn recut(&mut self, cracks: &Cracks, changed: &[TipId]) -> f64 {
@@ -330,6 +346,9 @@ impl Solver for Total {
 
     fn begin_run(&mut self) {
         self.touching.look_again();
+        self.look_at_stretch();
+        self.stiffening.plan();
+        self.steps_since_check = 0;
     }
 
     fn is_touching(&self) -> bool {

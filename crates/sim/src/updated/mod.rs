@@ -283,7 +283,7 @@ impl Solver for Updated {
         self.stability.largest_step(&self.setup, &self.points)
     }
 
-    fn moving_time_step(&self) -> Option<f64> {
+    fn moving_time_step(&self, _planned: f64) -> Option<f64> {
         Some(self.stable_time_step())
     }
 

@@ -115,6 +115,7 @@ mod tests {
             ("ringing", 2.0, 2.0, 0.0, 0.06),
             ("ringing", 3.0, 2.0, 0.06, 0.3),
             ("stretched", 1.25, 2.0, 0.0, 0.05),
+            ("stretched", 2.0, 3.0, 0.0, 0.02),
             ("many-steps", 1e4, 0.0, 0.0, 1e-3),
         ] {
             let found = map(name).value(across, up).unwrap_or(f64::NAN);
