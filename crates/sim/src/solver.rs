@@ -11,8 +11,8 @@ pub(crate) trait Solver: Snapshot + Observed + std::fmt::Debug + Send {
     /// Largest stable time step for the present state [s].
     fn stable_time_step(&self) -> f64;
 
-    /// What [`Solver::stable_time_step`] is by now, as well as can be told at little cost; `planned`: what it was when the
-    /// run began [s]. None where it has not moved.
+    /// What [`Solver::stable_time_step`] is by now, as well as can be told at little cost; `planned`: what it was when
+    /// the run began [s]. None where it has not moved.
     fn moving_time_step(&self, planned: f64) -> Option<f64>;
 
     /// Goes from `time` to `time` + `time_step`. `observe` is called in mid-step, when displacements, velocities and

@@ -7,16 +7,22 @@ use crate::placement::Placement;
 use crate::problem::{Problem, linear_material, rectangle};
 use fissure_scene::{BoxSide, PlaneState, Point, Vector};
 use fissure_sim::SimulationError;
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
 pub(super) const NEAR_THINGS: StabilityMap = StabilityMap {
     name: "near-things",
     title: "Error of K_I of a tip that has something near, against cells a third as large",
     across: Parameter::numbers("distance [cells]", &[1.0, 2.0, 3.0, 4.0, 5.0, 7.0, 10.0]),
-    up: Parameter::choices("", &["hole ahead", "hole beside", "tip ahead", "crack beside"]),
+    up: Parameter::choices(
+        "",
+        &["hole ahead", "hole beside", "tip ahead", "crack beside", "corner of a hole", "corner of the plate"],
+    ),
     limits: ERRORS,
     run: |distance, kind| {
-        let [coarse, fine] = [1.0, 1.0 / 3.0].map(|h| mode_1(distance, kind as u8, h));
+        let [coarse, fine] = [1.0, 1.0 / 3.0].map(|h| match kind as u8 {
+            5 => mode_1_before_corner(distance, h),
+            kind => mode_1(distance, kind, h),
+        });
         Ok((coarse? / fine? - 1.0).abs())
     },
 };
@@ -44,16 +50,18 @@ const MOST_STEPS: u64 = 30_000;
 fn mode_1(distance: f64, kind: u8, h: f64) -> Result<f64, SimulationError> {
     let (width, height, at) = (24.0, 36.0, 18.2);
     let mut plate = rectangle((0.0, 0.0), (width, height));
-    let mut hole = |middle: Point| {
+    let mut hole = |middle: Point, corners: u8| {
         let corner = |k: u8| {
-            let angle = -TAU * f64::from(k) / 48.0;
+            let angle = -TAU * f64::from(k) / f64::from(corners);
             middle + Vector::new(angle.cos(), angle.sin()) * RADIUS
         };
-        plate.holes.push((0..48).map(corner).collect());
+        plate.holes.push((0..corners).map(corner).collect());
     };
     match kind {
-        0 => hole(Point::new(CRACK + distance + RADIUS, at)),
-        1 => hole(Point::new(CRACK, at + distance + RADIUS)),
+        0 => hole(Point::new(CRACK + distance + RADIUS, at), 48),
+        1 => hole(Point::new(CRACK, at + distance + RADIUS), 48),
+        // On its corner, which points at the tip.
+        4 => hole(Point::new(CRACK + distance + RADIUS, at), 4),
         _ => {}
     }
     let mut problem = Problem::new("plate", plate, linear_material(), PlaneState::Strain, h)
@@ -66,6 +74,25 @@ fn mode_1(distance: f64, kind: u8, h: f64) -> Result<f64, SimulationError> {
         3 => problem = problem.crack(&[(CRACK - 4.0, at + distance), (CRACK + 4.0, at + distance)], [true, true]),
         _ => {}
     }
+    mode_1_at_rest(&problem)
+}
+
+/// K_I of a crack on the diagonal of a plate of 24 m that is pulled to all sides, so far from the corner ahead [m].
+fn mode_1_before_corner(distance: f64, h: f64) -> Result<f64, SimulationError> {
+    let side = 24.0;
+    let [start, end] = [distance + CRACK, distance].map(|way| side - way * FRAC_1_SQRT_2);
+    let problem = Problem::new("plate", rectangle((0.0, 0.0), (side, side)), linear_material(), PlaneState::Strain, h)
+        .at_rest()
+        .crack(&[(start, start), (end, end)], [false, true])
+        .traction(BoxSide::Top, 0.0, STRESS)
+        .traction(BoxSide::Bottom, 0.0, -STRESS)
+        .traction(BoxSide::Right, STRESS, 0.0)
+        .traction(BoxSide::Left, -STRESS, 0.0);
+    mode_1_at_rest(&problem)
+}
+
+/// K_I of the first tip of a problem, once that has come to rest.
+fn mode_1_at_rest(problem: &Problem) -> Result<f64, SimulationError> {
     let mut placed = Placed::new(&problem.scene, Placement::NATURAL)?;
     placed.relax(REST, MOST_STEPS)?;
     Ok(placed.now().tips()[0].mode_1)
