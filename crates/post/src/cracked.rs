@@ -295,13 +295,22 @@ impl<'a> Solids<'a> {
         }
     }
 
-    /// The solid of some polygons, with what their corners within carry; none of none.
+    /// The solid of some polygons, with what their corners within carry; none of none. Its walls are smooth where it is
+    /// no solid with rough ones: faces that are open by a few grid steps may meet there.
     fn mesh(&self, body: u32, piece: u32, extrusion: &Extrusion<'_>, caps: Vec<(Cap, Vec<Carried>)>) -> Option<Mesh> {
         let area = caps.iter().map(|(cap, _)| area(&cap.shape, extrusion.grid)).sum();
-        let name = object_name(&self.names[body as usize], "piece", piece);
-        let mut mesh = Mesh::new(name, piece, Content::Solid { area, thickness: self.options.thickness, slack: 0.0 });
-        mesh.texture_size = self.options.uv_in_metres.then_some(extrusion.texture_size);
-        caps.iter().for_each(|(cap, within)| extrusion.solid(cap, within, &mut mesh));
+        let made = |extrusion: &Extrusion<'_>| {
+            let name = object_name(&self.names[body as usize], "piece", piece);
+            let content = Content::Solid { area, thickness: self.options.thickness, slack: 0.0 };
+            let mut mesh = Mesh::new(name, piece, content);
+            mesh.texture_size = self.options.uv_in_metres.then_some(extrusion.texture_size);
+            caps.iter().for_each(|(cap, within)| extrusion.solid(cap, within, &mut mesh));
+            mesh
+        };
+        let mut mesh = made(extrusion);
+        if extrusion.relief.is_some() && mesh.check().is_err() {
+            mesh = made(&Extrusion { relief: None, ..*extrusion });
+        }
         (!caps.is_empty()).then_some(mesh)
     }
 }

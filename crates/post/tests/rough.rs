@@ -5,7 +5,7 @@ mod common;
 
 use common::{Opened, frame, options, scene, square};
 use fissure_post::{Mesh, PostOptions, Slot, post_frame};
-use fissure_scene::{CrackEnd, Frame, Point, Roughness, Scene, Vector};
+use fissure_scene::{CrackEnd, Cut, Frame, Point, Roughness, Scene, Vector, Walls};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use std::collections::BTreeSet;
@@ -113,5 +113,19 @@ proptest! {
         let off = (volume(&before) - volume(&after)).abs();
         prop_assert!(off < 0.01 * amplitude * area, "{} of {}", off, amplitude * area);
         prop_assert!(moved > 2.0 * off);
+    }
+
+    /// Cracks that are held open by a few grid steps only: all solids pass their check, rough or not.
+    #[test]
+    fn closed_cracks_with_rough_walls_are_solids(
+        tip in proptest::collection::vec(-0.5..0.5_f64, 3..9), amplitude in 0.1..0.5_f64, seed: u64, at_rest: bool,
+    ) {
+        let (scene, frame) = cracked_square(&[0.0; 5], &[0.0; 4], &tip, 0.0);
+        let roughness = Some(Roughness { amplitude, length: 4.0 * amplitude, seed });
+        let cut = if at_rest { Cut::Rest } else { Cut::Opening };
+        let options = PostOptions { thickness: 3.0, roughness, walls: Walls::All, cut, ..options(&scene) };
+        let meshes = post_frame(&scene, &frame, &options).unwrap().parts.remove(0).1;
+        prop_assert_eq!(meshes.len(), 3);
+        prop_assert!(meshes.iter().all(|mesh| mesh.check().is_ok()));
     }
 }
