@@ -8,13 +8,14 @@ use crate::interrupt::Interrupt;
 use crate::progress::duration;
 use crate::report::{self, Report};
 use crate::richardson::{Trend, trend};
-use crate::{scene_file, threads};
+use crate::{convergence_plot, scene_file, threads};
 use fissure_files::Folder;
 use fissure_plane::Point;
 use fissure_scene::{Crack, End, Frame, Scene, TipRecord};
 use fissure_sim::Simulation;
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::time::Instant;
 
 /// A number that a run gave; runs are compared by its name.
@@ -68,14 +69,28 @@ pub(crate) fn converge(arguments: &ConvergeArguments, interrupt: &Interrupt, rep
     let rows = rows([coarse, middle, fine], ratio);
     report::print(&text([coarse, middle, fine], &rows))?;
     if let Some(path) = &arguments.csv {
-        let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
-        let folder = Folder::new(parent.unwrap_or_else(|| std::path::Path::new(".")));
-        folder.make()?;
-        let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-        folder.write(name, csv([coarse, middle, fine], &rows).as_bytes())?;
-        report.note(&format!("wrote `{}`", path.display()));
+        write(path, &csv([coarse, middle, fine], &rows), report)?;
+    }
+    if let Some(path) = &arguments.svg {
+        let cells = [coarse, middle, fine].map(|outcome| outcome.cell_size);
+        let quantities: Vec<_> = rows.iter().map(|row| (row.name.as_str(), row.values, row.trend)).collect();
+        match convergence_plot::figure(cells, &quantities) {
+            Some(figure) => write(path, &figure.to_svg(), report)?,
+            None => report.warn(&format!("nothing converges, so that `{}` is not written", path.display())),
+        }
     }
     Ok(Exit::Done)
+}
+
+/// Writes a file whose folder may be missing.
+fn write(path: &Path, text: &str, report: &Report) -> Result<(), Failure> {
+    let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
+    let folder = Folder::new(parent.unwrap_or_else(|| Path::new(".")));
+    folder.make()?;
+    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+    folder.write(name, text.as_bytes())?;
+    report.note(&format!("wrote `{}`", path.display()));
+    Ok(())
 }
 
 /// Runs a scene to its end; none: the user has asked to stop.
