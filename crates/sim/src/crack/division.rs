@@ -392,23 +392,30 @@ impl Division {
     }
 
     /// How the square around `center`, `half` [m] to each side, is split by the only crack that runs through it of
-    /// those that `counts`; none where there is none, or several.
+    /// those that `counts`; none where there is none, or several. Of what is drawn ahead of several tips it is the
+    /// nearest tip's: between tips that face each other both are there.
     pub(crate) fn split_square(&self, center: Point, half: f64, counts: impl Fn(u32) -> bool) -> Option<Split> {
-        let mut chain = Vec::new();
-        let mut of = None;
-        for &(index, segment) in self.bucket(center) {
-            let line = &self.lines[index as usize];
-            let is_part = matches!(line.kinds[segment as usize], SegmentKind::Real | SegmentKind::AheadOfTip);
-            let segment = line.segments[segment as usize];
-            if !is_part || !counts(line.crack) || !runs_through(center, half, segment) {
+        let is_part = |line: &Line, segment: u32| {
+            matches!(line.kinds[segment as usize], SegmentKind::Real | SegmentKind::AheadOfTip)
+                && runs_through(center, half, line.segments[segment as usize])
+        };
+        let mut chosen: Option<(f64, Vec<(Point, Point)>)> = None;
+        for of_line in self.bucket(center).chunk_by(|s, t| s.0 == t.0) {
+            let line = &self.lines[of_line[0].0 as usize];
+            let within: Vec<u32> = of_line.iter().map(|s| s.1).filter(|&segment| is_part(line, segment)).collect();
+            if within.is_empty() || !counts(line.crack) {
                 continue;
             }
-            if *of.get_or_insert(index) != index {
-                return None;
+            let is_real = within.iter().any(|&segment| line.kinds[segment as usize] == SegmentKind::Real);
+            let to_tip = |tip: &TipRay| (tip.position - center).norm();
+            let distance = if is_real { 0.0 } else { line.tips.iter().map(to_tip).fold(f64::INFINITY, f64::min) };
+            match &chosen {
+                Some((nearest, _)) if is_real || *nearest == 0.0 => return None,
+                Some((nearest, _)) if *nearest <= distance => {}
+                _ => chosen = Some((distance, within.iter().map(|&k| line.segments[k as usize]).collect())),
             }
-            chain.push(segment);
         }
-        Split::of_square(center, half, &chain)
+        Split::of_square(center, half, &chosen?.1)
     }
 
     /// What the line from `particle` to `node` crosses.
