@@ -64,7 +64,9 @@ impl Split {
         let (share, near, far) = if is_left { (share, left, right) } else { (1.0 - share, right, left) };
         let is_own = |p: Point| is_left_of(segments, p) == is_left;
         let is_in_sight = segments.iter().all(|&(a, b)| !segments_touch(center, center + near, a, b))
-            || segments.iter().any(|&(a, b)| orientation(a, b, center) == 0.0);
+            || segments
+                .iter()
+                .any(|&(a, b)| orientation(a, b, center) == 0.0 && (center - a).dot(&(center - b)) <= 0.0);
         (is_in_sight && is_own(center + near) && !is_own(center + far)).then_some(Self { share, near, far })
     }
 }

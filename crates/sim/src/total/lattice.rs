@@ -37,6 +37,8 @@ pub(super) struct Lattice {
     pub(super) owners: Owners,
     /// Body of each crack.
     pub(super) body_of_crack: Vec<u32>,
+    /// Mass of the lightest particle [kg/m].
+    pub(super) least_mass: f64,
     /// One over the mass of each field [m/kg]; zero where there is none.
     pub(super) inverse_mass: Vec<f64>,
     kernel: Kernel,
@@ -95,6 +97,7 @@ impl Lattice {
             if scene.bodies.len() > 1 { owners_of_nodes(kernel, &grid, &particles) } else { Owners::default() };
         Ok(Self {
             grid,
+            least_mass: particles.mass.iter().copied().fold(f64::INFINITY, f64::min),
             particles,
             owners,
             body_of_crack: Vec::new(),

@@ -242,7 +242,7 @@ impl Lattice {
         self.layout.mass.resize(self.field_count(), 0.0);
         motion.resize(self.field_count());
         let field_changes = field_changes(changes, motion);
-        let smallest = NO_MASS * self.particles.mass.iter().copied().fold(f64::INFINITY, f64::min);
+        let smallest = NO_MASS * self.least_mass;
         let twice = |mass: f64, velocity: Vector| mass * velocity.norm_squared();
         let mut lost = 0.0;
         for (field, t) in field_changes {
