@@ -139,10 +139,14 @@ fn grids(scene: &Scene, frame: &Frame, cracks: &[CrackFrame], beyond: f64) -> Re
     let grid = |(number, body): (u32, &fissure_scene::Body)| {
         let outlines = frame.outlines.iter().filter(|o| o.body == number);
         let cracks = cracks.iter().filter(|c| c.body == number);
+        let at_rest = outlines.clone().flat_map(|o| &o.rest).chain(cracks.clone().flat_map(|c| &c.rest));
         let faces = cracks.flat_map(|c| c.above.iter().chain(&c.below));
         let grid = Grid::covering(outlines.flat_map(|o| &o.position).chain(faces), beyond);
         let (low, high) = body.region.bounds();
-        grid.check(frame.number, &body.name, (high - low).amax())?;
+        // Places at rest may tell how far something has moved: without reason they lead beyond all grids.
+        for grid in [grid, Grid::covering(at_rest, 0.0)] {
+            grid.check(frame.number, &body.name, (high - low).amax())?;
+        }
         Ok(grid)
     };
     (0..).zip(&scene.bodies).map(grid).collect()

@@ -437,6 +437,9 @@ fn damaged_frames_are_refused() {
     refused(&|f| f.cracks[0].body = 3);
     refused(&|f| f.cracks[0].above.truncate(2));
     refused(&|f| f.particles.piece.truncate(2));
+    let mut stray = good.clone();
+    stray.cracks[0].rest[2].x = -9e307;
+    assert!(matches!(post_frame(&scene, &stray, &options(&scene)), Err(PostError::TooFar { frame: 1, .. })));
     let mut thin = options(&scene);
     thin.thickness = 0.0;
     assert!(matches!(post_frame(&scene, &good, &thin), Err(PostError::Option { name: "thickness", .. })));
