@@ -2,47 +2,60 @@
 
 use super::surface::Surface;
 use fissure_plane::{Point, Vector};
+use std::ops::Range;
 
 /// A cell: its row and its column.
 type Key = (i32, i32);
 
-/// Edges by the cell their first vertex is in.
+/// A distance may be off by this part of it, from rounding.
+const ROUND_OFF: f64 = 1e-9;
+
+/// An edge where it is now.
+#[derive(Debug, Clone, Copy)]
+struct Placed {
+    edge: u32,
+    middle: Point,
+    /// All places within the reach of the edge are within this distance of its middle, squared [m²].
+    reach_squared: f64,
+}
+
+/// Edges by the cell their middle is in.
 pub(super) struct Cells {
-    /// Sorted.
-    edges: Vec<(Key, u32)>,
+    /// Sorted by cell, then by number.
+    edges: Vec<(Key, Placed)>,
     /// Side of a cell [m].
     size: f64,
 }
 
 impl Cells {
-    /// Cells so large that all edges within `reach` [m] of a place begin in its cell or in one beside it; vertices are
-    /// at `place` [m].
+    /// Cells so large that the middles of all edges within `reach` [m] of a place are in its cell or in one beside it;
+    /// vertices are at `place` [m].
     pub(super) fn new(surface: &Surface, place: &[Point], reach: f64) -> Self {
-        let edges = || (0..surface.len() as u32).filter_map(|edge| Some((edge, surface.next(edge)?)));
-        let length = |(edge, next): (u32, u32)| (place[next as usize] - place[edge as usize]).norm();
-        let size = reach + edges().map(length).fold(0.0, f64::max);
-        let mut cells = Self { edges: Vec::with_capacity(surface.len()), size };
-        cells.edges = edges().map(|(edge, _)| (cells.key(place[edge as usize]), edge)).collect();
-        cells.edges.sort_unstable();
-        cells
-    }
-
-    fn key(&self, place: Point) -> Key {
-        ((place.y / self.size).floor() as i32, (place.x / self.size).floor() as i32)
-    }
-
-    /// All edges within the reach of a place, and others.
-    pub(super) fn around(&self, place: Point) -> impl Iterator<Item = u32> {
-        around(&self.edges, |e| e.0, self.key(place)).map(|e| e.1)
+        let placed = |edge: u32| {
+            let (from, to) = (place[edge as usize], place[surface.next(edge)? as usize]);
+            let farthest = (reach + 0.5 * (to - from).norm()) * (1.0 + ROUND_OFF);
+            Some((farthest, Placed { edge, middle: from + (to - from) * 0.5, reach_squared: farthest * farthest }))
+        };
+        let all: Vec<(f64, Placed)> = (0..surface.len() as u32).filter_map(placed).collect();
+        let size = all.iter().map(|(farthest, _)| *farthest).fold(reach, f64::max);
+        let mut edges: Vec<(Key, Placed)> = all.iter().map(|&(_, placed)| (key(placed.middle, size), placed)).collect();
+        edges.sort_unstable_by_key(|&(key, placed)| (key, placed.edge));
+        Self { edges, size }
     }
 }
 
-/// Those of `sorted` that are in a cell or in one of the eight beside it.
-fn around<T>(sorted: &[T], key: impl Fn(&T) -> Key + Copy, (row, column): Key) -> impl Iterator<Item = &T> {
-    (row.saturating_sub(1)..=row.saturating_add(1)).flat_map(move |row| {
+fn key(place: Point, size: f64) -> Key {
+    ((place.y / size).floor() as i32, (place.x / size).floor() as i32)
+}
+
+/// Where in `sorted` those are that are in a cell or in one of the eight beside it: row by row.
+fn ranges_around<T>(sorted: &[(Key, T)], (row, column): Key) -> [Range<usize>; 3] {
+    let rows = [row.saturating_sub(1), row, row.saturating_add(1)];
+    rows.map(|row| {
         let (low, high) = ((row, column.saturating_sub(1)), (row, column.saturating_add(1)));
-        let first = sorted.partition_point(|item| key(item) < low);
-        sorted[first..].iter().take_while(move |item| key(item) <= high)
+        let first = sorted.partition_point(|item| item.0 < low);
+        let count = sorted[first..].iter().take_while(|item| item.0 <= high).count();
+        first..first + count
     })
 }
 
@@ -80,40 +93,50 @@ impl Summary {
     }
 }
 
-/// Where nothing has moved relative to what is around it.
-pub(super) struct Calm<'a> {
+/// What is around one place after another.
+pub(super) struct Surroundings<'a> {
     cells: &'a Cells,
     /// Of each cell with edges, sorted.
     summaries: Vec<(Key, Summary)>,
-    /// What was found last.
-    last: Option<(Key, bool)>,
+    /// Whatever moves less than this relative to each other has moved alike [m].
+    slide: f64,
+    /// The cell that was asked for last.
+    key: Option<Key>,
+    /// Where its edges and those of the cells beside it are.
+    ranges: [Range<usize>; 3],
+    is_calm: bool,
 }
 
-impl<'a> Calm<'a> {
-    /// Looks at all cells, for vertices at `place` [m].
-    pub(super) fn new(cells: &'a Cells, surface: &Surface, place: &[Point]) -> Self {
-        let summary = |group: &[(Key, u32)]| {
-            let of = |&(_, edge): &(Key, u32)| Summary::of(surface, place, edge);
+impl<'a> Surroundings<'a> {
+    /// Looks at all cells, for vertices at `place` [m]. `slide`: what moves less than this relative to each other has
+    /// moved alike [m].
+    pub(super) fn new(cells: &'a Cells, surface: &Surface, place: &[Point], slide: f64) -> Self {
+        let summary = |group: &[(Key, Placed)]| {
+            let of = |(_, placed): &(Key, Placed)| Summary::of(surface, place, placed.edge);
             Some((group.first()?.0, group.iter().map(of).reduce(Summary::with)?))
         };
-        Self { cells, summaries: cells.edges.chunk_by(|a, b| a.0 == b.0).filter_map(summary).collect(), last: None }
+        let summaries = cells.edges.chunk_by(|a, b| a.0 == b.0).filter_map(summary).collect();
+        Self { cells, summaries, slide, key: None, ranges: [0..0, 0..0, 0..0], is_calm: true }
     }
 
-    /// Whether all edges within the reach of a place are crack faces of one body and have moved alike, to within
-    /// `slide` [m].
-    pub(super) fn is_calm(&mut self, place: Point, slide: f64) -> bool {
-        let key = self.cells.key(place);
-        if let Some((of, is_calm)) = self.last
-            && of == key
-        {
-            return is_calm;
+    /// Goes to a place. Returns whether all edges within its reach are crack faces of one body that have moved alike.
+    pub(super) fn are_calm_at(&mut self, place: Point) -> bool {
+        let key = key(place, self.cells.size);
+        if self.key != Some(key) {
+            self.key = Some(key);
+            self.ranges = ranges_around(&self.cells.edges, key);
+            let summaries = ranges_around(&self.summaries, key).into_iter().flat_map(|range| &self.summaries[range]);
+            self.is_calm = summaries.map(|s| s.1).reduce(Summary::with).is_none_or(|all| {
+                let (low, high) = all.displacements;
+                all.is_on_crack && all.bodies.0 == all.bodies.1 && (high - low).norm() < self.slide
+            });
         }
-        let all = around(&self.summaries, |s| s.0, key).map(|s| s.1).reduce(Summary::with);
-        let is_calm = all.is_none_or(|all| {
-            let (low, high) = all.displacements;
-            all.is_on_crack && all.bodies.0 == all.bodies.1 && (high - low).norm() < slide
-        });
-        self.last = Some((key, is_calm));
-        is_calm
+        self.is_calm
+    }
+
+    /// All edges within the reach of a place in the cell that was gone to, and some beyond it.
+    pub(super) fn edges(&self, place: Point) -> impl Iterator<Item = u32> {
+        let all = self.ranges.iter().flat_map(|range| &self.cells.edges[range.clone()]);
+        all.filter(move |(_, p)| (p.middle - place).norm_squared() <= p.reach_squared).map(|(_, placed)| placed.edge)
     }
 }

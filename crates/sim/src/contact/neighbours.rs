@@ -1,6 +1,6 @@
 //! Which vertices of surfaces can come to which edges before the next look.
 
-use super::cells::{Calm, Cells};
+use super::cells::{Cells, Surroundings};
 use super::surface::Surface;
 use fissure_plane::{Point, Vector, nearest_on_segment};
 
@@ -47,28 +47,25 @@ impl Neighbours {
         let rest = surface.places_at_rest();
         let search = Search { surface, place, rest: &rest, cell_size, cracks_touch };
         let cells = Cells::new(surface, place, REACH * cell_size);
-        let mut calm = Calm::new(&cells, surface, place);
-        let normals: Vec<Option<Vector>> = (0..surface.len() as u32).map(|v| surface.normal(v, place)).collect();
+        let mut around = Surroundings::new(&cells, surface, place, search.least_slide());
         let edge_normals: Vec<Option<Vector>> =
             (0..surface.len() as u32).map(|edge| surface.edge_normal(edge, place)).collect();
         let mut found = Self { first: vec![0], ..Self::default() };
+        let mut near = Vec::new();
         for vertex in 0..surface.len() as u32 {
-            let Some(normal) = normals[vertex as usize] else { continue };
-            if calm.is_calm(place[vertex as usize], search.least_slide()) {
+            let x = place[vertex as usize];
+            if around.are_calm_at(x) {
                 continue;
             }
+            let Some(normal) = surface.normal(vertex, place) else { continue };
             let faces = |edge: &u32| edge_normals[*edge as usize].is_some_and(|n| n.dot(&normal) < MAY_FACE);
-            let facing = || cells.around(place[vertex as usize]).filter(faces);
-            let touches = |edge: u32| {
-                !search.stays(vertex, edge) && search.is_near(vertex, edge) && search.can_touch(vertex, edge)
-            };
-            if !facing().any(touches) {
+            near.clear();
+            near.extend(around.edges(x).filter(faces).filter(|&edge| search.is_near(vertex, edge)));
+            if !near.iter().any(|&edge| !search.stays(vertex, edge) && search.can_touch(vertex, edge)) {
                 continue;
             }
-            let before = found.edges.len();
-            let near = facing().filter(|&edge| search.is_near(vertex, edge));
-            found.edges.extend(near.map(|edge| Neighbour { edge, can_touch: search.can_touch(vertex, edge) }));
-            found.edges[before..].sort_unstable_by_key(|neighbour| neighbour.edge);
+            near.sort_unstable();
+            found.edges.extend(near.iter().map(|&edge| Neighbour { edge, can_touch: search.can_touch(vertex, edge) }));
             found.vertices.push(vertex);
             found.first.push(found.edges.len() as u32);
         }
