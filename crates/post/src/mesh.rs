@@ -126,36 +126,64 @@ impl Mesh {
     /// The first defect found, with its place.
     pub fn check(&self) -> Result<(), MeshDefect> {
         let Content::Solid { area, thickness, slack } = self.content else { return Ok(()) };
-        let mut corners = FxHashMap::with_capacity_and_hasher(self.vertices.len(), Default::default());
-        // The number of the place of each vertex. Adding zero makes −0 and 0 the same place, as they are to a reader.
-        let mut number = |vertex: &Vertex| {
-            let place = vertex.position.map(|x| (x as f32 + 0.0).to_bits());
-            let next = corners.len() as u32;
-            *corners.entry(place).or_insert(next)
-        };
-        let numbers: Vec<u32> = self.vertices.iter().map(&mut number).collect();
-        let mut edges = FxHashMap::with_capacity_and_hasher(3 * self.triangle_count(), Default::default());
+        let places: Vec<[f64; 3]> = self.vertices.iter().map(|vertex| rounded(vertex.position)).collect();
         for triangle in self.all_triangles() {
-            let [p, q, r] = triangle.map(|i| rounded(self.vertices[i as usize].position));
+            let [p, q, r] = triangle.map(|i| places[i as usize]);
             let normal = cross(subtract(q, p), subtract(r, p));
             if dot(normal, normal) == 0.0 {
                 return Err(MeshDefect::Degenerate { place: p });
             }
-            let [a, b, c] = triangle.map(|i| numbers[i as usize]);
-            for (edge, place) in [((a, b), p), ((b, c), q), ((c, a), r)] {
-                if edges.insert(edge, place).is_some() {
-                    return Err(MeshDefect::NotManifold { place });
-                }
-            }
         }
-        let open = edges.iter().filter(|((a, b), _)| !edges.contains_key(&(*b, *a)));
-        // The smallest, so that the message does not depend on the order of the map.
-        if let Some((_, &place)) = open.min_by_key(|(edge, _)| **edge) {
-            return Err(MeshDefect::Open { place });
-        }
+        self.check_edges(&places)?;
         let (volume, expected) = (self.volume(), area * thickness);
         let close = (volume - expected).abs() <= 1e-6 * expected + slack;
         if close { Ok(()) } else { Err(MeshDefect::WrongVolume { volume, expected }) }
+    }
+
+    /// Checks that each edge, from one of the `places` of the vertices to another, has one triangle on either side.
+    fn check_edges(&self, places: &[[f64; 3]]) -> Result<(), MeshDefect> {
+        let mut known = FxHashMap::with_capacity_and_hasher(places.len(), Default::default());
+        let mut distinct = Vec::with_capacity(places.len());
+        // The number of the place of each vertex. Adding zero makes −0 and 0 the same place, as they are to a reader.
+        let mut number = |place: &[f64; 3]| {
+            *known.entry(place.map(|x| (x as f32 + 0.0).to_bits())).or_insert_with(|| {
+                distinct.push(*place);
+                distinct.len() - 1
+            })
+        };
+        let numbers: Vec<usize> = places.iter().map(&mut number).collect();
+        let edges = || {
+            self.all_triangles().flat_map(|triangle| {
+                let [a, b, c] = triangle.map(|i| numbers[i as usize]);
+                [(a, b), (b, c), (c, a)]
+            })
+        };
+        // The ends of the edges that start at each place, one place after the other.
+        let mut ends = vec![0; 3 * self.triangle_count()];
+        let mut until = vec![0; distinct.len()];
+        edges().for_each(|(a, _)| until[a] += 1);
+        let mut begin = 0;
+        for count in &mut until {
+            begin += std::mem::replace(count, begin);
+        }
+        for (a, b) in edges() {
+            ends[until[a]] = b;
+            until[a] += 1;
+        }
+        let of = |a: usize| (if a == 0 { 0 } else { until[a - 1] })..until[a];
+        for (a, &place) in distinct.iter().enumerate() {
+            let ends = &mut ends[of(a)];
+            ends.sort_unstable();
+            if ends.windows(2).any(|pair| pair[0] == pair[1]) {
+                return Err(MeshDefect::NotManifold { place });
+            }
+        }
+        for (a, &place) in distinct.iter().enumerate() {
+            if ends[of(a)].iter().any(|&b| ends[of(b)].binary_search(&a).is_err()) {
+                return Err(MeshDefect::Open { place });
+            }
+        }
+        Ok(())
     }
 }
 

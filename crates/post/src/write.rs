@@ -30,12 +30,14 @@ pub fn write_frame(
     let mut records = Vec::with_capacity(formats.len() * meshes.parts.len());
     for shot in meshes.shots(scene, frame) {
         let own = |format: &&Format| format.shows(shot.part) && sequence(**format).is_none();
+        let solids = shot.objects.iter().filter(|mesh| matches!(mesh.content, Content::Solid { .. }));
+        let volume = solids.map(Mesh::volume).sum();
         for &format in formats.iter().filter(own) {
             let file = file_name(&scene.name, shot.part, meshes.provenance.frame, format);
             let path = folder.place(&file)?;
             let bytes = encode(format, &shot).map_err(|cause| WriteError::Format { file: file.clone(), cause })?;
             write(folder, &file, format, &bytes)?;
-            records.push(record(file, path, format, &shot));
+            records.push(record(file, path, format, volume, &shot));
         }
     }
     Ok(records)
@@ -71,11 +73,11 @@ pub(crate) fn write(folder: &Folder, file: &str, format: Format, bytes: &[u8]) -
     Ok(folder.write_unsynced(file, bytes)?)
 }
 
-fn record(file: String, path: PathBuf, format: Format, shot: &Shot<'_>) -> FileRecord {
+fn record(file: String, path: PathBuf, format: Format, volume: f64, shot: &Shot<'_>) -> FileRecord {
     let objects = shot.objects;
     let solids = || {
         objects.iter().filter_map(|m| {
-            if let Content::Solid { area, thickness, .. } = m.content { Some((area, thickness, m)) } else { None }
+            if let Content::Solid { area, thickness, .. } = m.content { Some((area, thickness)) } else { None }
         })
     };
     FileRecord {
@@ -88,9 +90,9 @@ fn record(file: String, path: PathBuf, format: Format, shot: &Shot<'_>) -> FileR
         pieces: objects.len(),
         vertices: objects.iter().map(|m| m.vertices.len()).sum(),
         triangles: objects.iter().map(Mesh::triangle_count).sum(),
-        area: solids().map(|(area, _, _)| area).sum(),
-        thickness: solids().next().map_or(0.0, |(_, thickness, _)| thickness),
-        volume: solids().map(|(_, _, mesh)| mesh.volume()).sum(),
+        area: solids().map(|(area, _)| area).sum(),
+        thickness: solids().next().map_or(0.0, |(_, thickness)| thickness),
+        volume,
         objects: objects.iter().map(object_record).collect(),
     }
 }

@@ -141,15 +141,9 @@ impl Document {
             let metres = self.floats(metres, vertices.len(), Type::Vec2);
             attributes.insert(Valid(Semantic::TexCoords(1)), metres);
         }
-        let mut indices = Vec::with_capacity(12 * triangles.len());
-        triangles.iter().flatten().for_each(|i| indices.extend(i.to_le_bytes()));
-        let indices = self.accessor(
-            indices,
-            3 * triangles.len(),
-            Type::Scalar,
-            ComponentType::U32,
-            Some(Target::ElementArrayBuffer),
-        );
+        let indices = triangles.iter().flatten().map(|i| i.to_le_bytes());
+        let target = Some(Target::ElementArrayBuffer);
+        let indices = self.accessor(indices, 3 * triangles.len(), Type::Scalar, ComponentType::U32, target);
         let material = self.material(slot);
         Primitive { indices: Some(indices), material: Some(material), ..primitive(attributes) }
     }
@@ -173,9 +167,7 @@ impl Document {
     }
 
     fn floats(&mut self, values: impl Iterator<Item = f32>, count: usize, kind: Type) -> Index<Accessor> {
-        let mut bytes = Vec::with_capacity(16 * count);
-        values.for_each(|value| bytes.extend(value.to_le_bytes()));
-        self.accessor(bytes, count, kind, ComponentType::F32, Some(Target::ArrayBuffer))
+        self.accessor(values.map(f32::to_le_bytes), count, kind, ComponentType::F32, Some(Target::ArrayBuffer))
     }
 
     /// Numbers of an animation: rising times, from the least to the greatest.
@@ -190,30 +182,31 @@ impl Document {
 
     /// Numbers of an animation: so many values of one kind.
     pub(super) fn keys(&mut self, values: &[f32], count: usize, kind: Type) -> Index<Accessor> {
-        let bytes = values.iter().flat_map(|v| v.to_le_bytes()).collect();
-        self.accessor(bytes, count, kind, ComponentType::F32, None)
+        self.accessor(values.iter().map(|value| value.to_le_bytes()), count, kind, ComponentType::F32, None)
     }
 
-    /// Appends `bytes` with a view and an accessor of their own. All components have four bytes, so all stay aligned.
+    /// Appends numbers with a view and an accessor of their own. All have four bytes, so all stay aligned.
     fn accessor(
         &mut self,
-        bytes: Vec<u8>,
+        numbers: impl Iterator<Item = [u8; 4]>,
         count: usize,
         kind: Type,
         component: ComponentType,
         target: Option<Target>,
     ) -> Index<Accessor> {
+        let begin = self.binary.len();
+        self.binary.reserve(16 * count);
+        numbers.for_each(|number| self.binary.extend_from_slice(&number));
         let view = self.root.push(buffer::View {
             buffer: Index::new(0),
-            byte_length: USize64::from(bytes.len()),
-            byte_offset: Some(USize64::from(self.binary.len())),
+            byte_length: USize64::from(self.binary.len() - begin),
+            byte_offset: Some(USize64::from(begin)),
             byte_stride: None,
             name: None,
             target: target.map(Valid),
             extensions: None,
             extras: None,
         });
-        self.binary.extend(bytes);
         self.root.push(Accessor {
             buffer_view: Some(view),
             byte_offset: None,

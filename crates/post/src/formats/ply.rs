@@ -29,23 +29,28 @@ const POINT_PROPERTIES: [&str; 7] = ["x", "y", "z", "vx", "vy", "vz", "piece"];
 fn bytes(meshes: &[Mesh], provenance: &Provenance, convention: Convention) -> Result<Vec<u8>, FormatError> {
     let points_only = !meshes.is_empty() && meshes.iter().all(|m| m.content == Content::Points);
     let metres = meshes.iter().any(|mesh| mesh.texture_size.is_some());
-    let mut rows = Rows { points_only, metres, ..Rows::default() };
-    meshes.iter().for_each(|mesh| rows.add(mesh, convention));
+    let groups: Vec<Group<'_>> = meshes.iter().flat_map(|mesh| groups(mesh, convention)).collect();
+    let vertices = groups.iter().map(|group| group.vertices.len()).sum();
+    let faces = groups.iter().map(|group| group.triangles.len()).sum();
     let mut names = if points_only { POINT_PROPERTIES.to_vec() } else { MESH_PROPERTIES.to_vec() };
-    names.extend(METRES.iter().filter(|_| rows.metres));
+    names.extend(METRES.iter().filter(|_| metres));
     let mut header = Header::new();
     header.encoding = Encoding::BinaryLittleEndian;
     header.comments = comments(provenance);
     let floats = names.iter().map(|name| PropertyDef::new((*name).to_owned(), Scalar(ScalarType::Float)));
-    header.elements.add(element("vertex", rows.vertex_count, floats));
+    header.elements.add(element("vertex", vertices, floats));
     if !points_only {
         let indices = PropertyDef::new("vertex_indices".to_owned(), List(ScalarType::UChar, ScalarType::Int));
-        header.elements.add(element("face", rows.face_count, std::iter::once(indices)));
+        header.elements.add(element("face", faces, std::iter::once(indices)));
     }
-    let mut written = Vec::with_capacity(1024 + rows.vertices.len() + rows.faces.len());
+    let mut written = Vec::with_capacity(1024 + 4 * names.len() * vertices + FACE * faces);
     Writer::<DefaultElement>::new().write_header(&mut written, &header)?;
-    written.extend(rows.vertices);
-    written.extend(rows.faces);
+    groups.iter().for_each(|group| group.add_vertices(points_only, metres, &mut written));
+    let mut first = 0;
+    for group in &groups {
+        group.add_faces(first, &mut written);
+        first += group.vertices.len() as u32;
+    }
     Ok(written)
 }
 
@@ -85,53 +90,59 @@ fn comments(provenance: &Provenance) -> Vec<String> {
     lines.map(|line| line.replace(['\r', '\n'], " ")).to_vec()
 }
 
-/// The bytes of both elements.
-#[derive(Default)]
-struct Rows {
-    /// Whether vertices have no normals, texture coordinates and slots.
-    points_only: bool,
-    /// Whether they have a second set of texture coordinates, in metres.
-    metres: bool,
-    vertices: Vec<u8>,
-    vertex_count: usize,
-    faces: Vec<u8>,
-    face_count: usize,
+/// Bytes of a triangle: its number of corners, and these.
+const FACE: usize = 13;
+
+/// The vertices and triangles of one slot of a mesh: vertices belong to one slot only.
+struct Group<'a> {
+    mesh: &'a Mesh,
+    slot: Slot,
+    vertices: Vec<PackedVertex>,
+    triangles: Vec<[u32; 3]>,
 }
 
-impl Rows {
-    /// Adds vertices and faces of `mesh`; the vertices of each slot are its own, so that each has one slot.
-    fn add(&mut self, mesh: &Mesh, convention: Convention) {
-        if mesh.content == Content::Points {
-            mesh.vertices.iter().for_each(|vertex| self.vertex(&pack(vertex, convention), mesh, 0));
-            return;
-        }
-        for slot in Slot::ALL {
-            let first = self.vertex_count as u32;
-            let (vertices, triangles) = compact(mesh, mesh.slot(slot), convention);
-            vertices.iter().for_each(|vertex| self.vertex(vertex, mesh, slot as u8));
-            for triangle in &triangles {
-                self.faces.push(3);
-                triangle.iter().for_each(|i| self.faces.extend((first + i).to_le_bytes()));
+/// Those of a mesh; points have no triangles.
+fn groups(mesh: &Mesh, convention: Convention) -> Vec<Group<'_>> {
+    if mesh.content == Content::Points {
+        let vertices = mesh.vertices.iter().map(|vertex| pack(vertex, convention)).collect();
+        return vec![Group { mesh, slot: Slot::Outside, vertices, triangles: Vec::new() }];
+    }
+    let group = |slot| {
+        let (vertices, triangles) = compact(mesh, mesh.slot(slot), convention);
+        Group { mesh, slot, vertices, triangles }
+    };
+    Slot::ALL.map(group).into()
+}
+
+impl Group<'_> {
+    /// Adds the bytes of the vertices: without normals, texture coordinates and slots where there are `points_only`,
+    /// with a second set of texture coordinates in `metres`.
+    fn add_vertices(&self, points_only: bool, metres: bool, written: &mut Vec<u8>) {
+        let (piece, slot) = (self.mesh.piece as f32, f32::from(self.slot as u8));
+        let mut floats =
+            |values: &[f32]| values.iter().for_each(|value| written.extend_from_slice(&value.to_le_bytes()));
+        for vertex in &self.vertices {
+            floats(&vertex.position);
+            if !points_only {
+                floats(&vertex.normal);
+                floats(&vertex.texture);
             }
-            self.face_count += triangles.len();
+            floats(&vertex.velocity);
+            floats(&[piece]);
+            if !points_only {
+                floats(&[slot]);
+            }
+            if metres {
+                floats(&vertex.metres(self.mesh.texture_size.unwrap_or(1.0)));
+            }
         }
     }
 
-    fn vertex(&mut self, vertex: &PackedVertex, mesh: &Mesh, slot: u8) {
-        let mut floats = |values: &[f32]| values.iter().for_each(|value| self.vertices.extend(value.to_le_bytes()));
-        floats(&vertex.position);
-        if !self.points_only {
-            floats(&vertex.normal);
-            floats(&vertex.texture);
+    /// Adds the bytes of the triangles; `first` is the number of the first vertex.
+    fn add_faces(&self, first: u32, written: &mut Vec<u8>) {
+        for triangle in &self.triangles {
+            written.push(3);
+            triangle.iter().for_each(|i| written.extend_from_slice(&(first + i).to_le_bytes()));
         }
-        floats(&vertex.velocity);
-        floats(&[mesh.piece as f32]);
-        if !self.points_only {
-            floats(&[f32::from(slot)]);
-        }
-        if self.metres {
-            floats(&vertex.metres(mesh.texture_size.unwrap_or(1.0)));
-        }
-        self.vertex_count += 1;
     }
 }
