@@ -269,6 +269,10 @@ pub(crate) struct PostArguments {
     pub(crate) take: PathBuf,
     #[command(flatten)]
     pub(crate) mesh: MeshArguments,
+    /// Override one key of the scene's output, e.g. `output.opening.factor=2`; may be repeated. The value is TOML; a
+    /// bare word is a string.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(crate) overrides: Vec<String>,
     /// Frames to write meshes of, e.g. `1-45x2` or `1,10,20-30` [default: all].
     #[arg(long, value_name = "RANGE")]
     pub(crate) frames: Option<FrameSet>,

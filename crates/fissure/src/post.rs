@@ -19,7 +19,8 @@ pub(crate) fn post(arguments: &PostArguments, interrupt: &Interrupt, report: &Re
     let threads = threads::set(arguments.threads)?;
     let path = take_path::take_in(&arguments.take)?;
     let take = Take::open(&path)?;
-    must_show(take.scene(), &arguments.mesh)?;
+    let scene = fissure_scene::with_output(take.scene(), &arguments.overrides)?;
+    must_show(&scene, &arguments.mesh)?;
     let numbers = take_path::chosen_frames(&take, &path, arguments.frames.as_ref())?;
     take.remarks()?.iter().for_each(|remark| report.warn(&remark.to_string()));
     let folder = match &arguments.output {
@@ -30,7 +31,7 @@ pub(crate) fn post(arguments: &PostArguments, interrupt: &Interrupt, report: &Re
     folder.make()?;
     let _lock = Lock::take(folder.path(), &invocation::typed())?;
     folder.remove_drafts()?;
-    let mesher = Mesher::new(take.scene(), &folder, &arguments.mesh, report)?;
+    let mesher = Mesher::new(&scene, &folder, &arguments.mesh, report)?;
     let progress = Mutex::new(TakeProgress::new(report, Made::Meshes, numbers.len()));
     let work = |work: Work| {
         let Work::InTake(number) = work else { return };

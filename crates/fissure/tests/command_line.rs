@@ -105,6 +105,23 @@ fn sim_then_post_gives_the_files_of_run() {
 }
 
 #[test]
+fn post_sets_the_output_as_run_does() {
+    let folder = workplace();
+    let set = ["--set", "output.opening.least=0.01", "--set", "output.uv_in_metres=true", "--formats", "glb"];
+    expect(&run(folder.path(), &[&["run", "plate.toml", "--output", "a"], &set[..]].concat()), 0);
+    expect(&run(folder.path(), &["sim", "plate.toml", "--output", "b"]), 0);
+    expect(&run(folder.path(), &[&["post", "b"], &set[..]].concat()), 0);
+    let meshes = |name: &str| {
+        let mut meshes = files(&folder.path().join(name));
+        meshes.retain(|path, _| path.extension().is_some_and(|extension| extension == "glb"));
+        meshes
+    };
+    assert!(meshes("a") == meshes("b") && meshes("a").len() == 12);
+    let refused = expect(&run(folder.path(), &["post", "b", "--set", "grid.cell_size=1"]), 2);
+    assert!(refused.contains("`grid.cell_size`") && refused.contains("--set output."), "{refused}");
+}
+
+#[test]
 fn frames_are_chosen_and_the_simulation_goes_no_further() {
     let folder = workplace();
     expect(&run(folder.path(), &["run", "plate.toml", "--frames", "1-7x3", "--formats", "ply"]), 0);

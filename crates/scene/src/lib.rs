@@ -43,6 +43,7 @@ pub use frame_check::{FrameFault, FramePart};
 #[cfg(feature = "load")]
 pub use load::{
     Draft, DraftOptions, LoadError, LoadErrorKind, Loaded, Place, draft, load, load_with_warnings, schema, template,
+    with_output,
 };
 pub use materials::{material_preset, material_presets};
 pub use presets::{solver_preset, updated_kernel};

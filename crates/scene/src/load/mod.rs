@@ -7,6 +7,7 @@ mod error;
 mod explain;
 mod loaded;
 mod nearest;
+mod output;
 mod overrides;
 mod picture;
 mod place;
@@ -20,6 +21,7 @@ mod template;
 pub use draft::{Draft, DraftOptions, draft};
 pub use error::{LoadError, LoadErrorKind};
 pub use loaded::Loaded;
+pub use output::with_output;
 pub use place::Place;
 pub use template::template;
 

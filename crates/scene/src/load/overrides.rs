@@ -50,21 +50,23 @@ impl Override {
             here = step(here, key, &mut path)?;
         }
         *step(here, last, &mut path)? = self.value.clone();
-        if let ([parent], Value::Table(table)) = (parents, here)
-            && parent == "grid"
-        {
-            replaced_by(last).iter().for_each(|other| drop(table.remove(*other)));
+        if let Value::Table(table) = here {
+            let parents: Vec<&str> = parents.iter().map(String::as_str).collect();
+            replaced_by(&parents, last).iter().for_each(|other| drop(table.remove(*other)));
         }
         Ok(path)
     }
 }
 
-/// Keys of `grid` that one of them takes the place of: a wish that of a resolution, and the other way round.
-fn replaced_by(key: &str) -> &'static [&'static str] {
-    match key {
-        "accuracy" => &["budget", "particle_spacing", "cell_size"],
-        "budget" => &["accuracy", "particle_spacing", "cell_size"],
-        "particle_spacing" => &["accuracy", "budget"],
+/// Keys of a table that one of them takes the place of: a wish that of a resolution, keyframes that of one number, and
+/// the other way round.
+fn replaced_by(table: &[&str], key: &str) -> &'static [&'static str] {
+    match (table, key) {
+        (["grid"], "accuracy") => &["budget", "particle_spacing", "cell_size"],
+        (["grid"], "budget") => &["accuracy", "particle_spacing", "cell_size"],
+        (["grid"], "particle_spacing") => &["accuracy", "budget"],
+        (["output", "opening" | "explode"], "factor") => &["keyframes"],
+        (["output", "opening" | "explode"], "keyframes") => &["factor"],
         _ => &[],
     }
 }

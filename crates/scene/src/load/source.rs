@@ -70,6 +70,11 @@ impl SceneSource {
         toml::Value::Table(table)
     }
 
+    /// The paths of the keys that overrides set, in their order.
+    pub(crate) fn set_paths(&self) -> impl Iterator<Item = &KeyPath> {
+        self.overrides.iter().map(|(path, _)| path)
+    }
+
     /// A fault of the scene, shown where its key is written: in the file, or in the override that set it.
     pub(crate) fn error(&self, fault: SceneFault) -> LoadError {
         LoadError::fault(self.locate(&fault.path), fault)

@@ -88,7 +88,7 @@ impl<'d> Resolver<'d> {
         Ok(FrameSettings { first, last, rate, playback })
     }
 
-    pub(super) fn output(&self, side: f64, frames: &FrameSettings, cell_size: f64) -> Resolved<OutputSettings> {
+    pub(crate) fn output(&self, side: f64, frames: &FrameSettings, cell_size: f64) -> Resolved<OutputSettings> {
         let keys = &self.document.output;
         if keys.formats.is_empty() || keys.parts.is_empty() {
             let key = if keys.formats.is_empty() { "formats" } else { "parts" };
