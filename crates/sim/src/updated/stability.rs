@@ -7,53 +7,63 @@ use crate::material::constitutive::principal_stretches;
 use crate::material::elastic::Elastic;
 use fissure_scene::{Kernel, Scene, Transfer};
 
-/// Places of a particle between two nodes at which a kernel is tried.
+/// Places of a particle between two nodes at which a kernel is tried, and how far each is shifted: a node at the end of
+/// a kernel's reach has no weight, but beside that end a part of the spread.
 const PLACES: usize = 256;
+const BESIDE: f64 = 1e-6;
 
 /// What Σ w'²/w stands for with the bilinear kernel, where it has no bound: strains come from remapped velocities
 /// there. Measured: a cracked plate that flies through the cells (FLIP) is stable at c_d Δt/h = 0.4 and gains energy at
 /// 0.6.
 const BILINEAR_SPREAD: f64 = 16.0;
 
-/// Largest stable c_d Δt / h whatever the arrangement of particles, surfaces and cracks: 2/ω̂ with a bound ω̂ on all
-/// frequencies.
+/// Farthest that a particle may move in a step [cells].
+const LONGEST_WAY: f64 = 0.4;
+
+/// Largest stable c_d Δt / h whatever the arrangement of particles, surfaces and cracks.
 ///
-/// K = Σ_p K_p and M = Σ_p M_p with M_p = m_p diag(w_ip), so no frequency is above the largest of a single particle's
-/// K_p, M_p (element eigenvalue theorem, Irons & Treharne 1971). Kernels are products, so that Σ_i ∇w ∇wᵀ/w =
-/// diag(S, S)/h² with S = Σ w'²/w along one axis, and a particle's largest frequency is that of dilatation:
-/// ω² ≤ (c_d/h)² S (1 + λ/(λ+2μ)). S: GIMP 9.3, quadratic 6, cubic 3.2. With ν = 0.3 in plane strain: GIMP 0.55,
-/// quadratic 0.68, cubic 0.94; measured on a cracked plate at rest and in flight: stable at 0.57, 0.62, 0.96, unstable
-/// at 0.68, 0.78, 1.15.
+/// K = Σ_p K_p and M = Σ_p M_p with M_p = m_p diag(w_ip), so nothing is faster than the fastest single particle by its
+/// own K_p, M_p (element eigenvalue theorem, Irons & Treharne 1971), and one that is alone is as fast. Kernels are
+/// products, so that Σ_i ∇w ∇wᵀ/w = diag(S, S)/h² with S = Σ w'²/w along one axis; its modes are those of dilatation,
+/// ω² = (c_d/h)² S (1 + λ/(λ+2μ)), and of shear, with a minus.
+///
+/// How long steps may be beside 1/ω says the transfer. With T for velocities of the grid that are sent to particles and
+/// back, and particles that keep the part k of what the grid does not see (affine FLIP: that of `affine_flip`; FLIP 1;
+/// PIC and APIC 0),
+///
+///   v' = T v⁺ + k (1 − T) v,   v⁺ = v − Δt M⁻¹K u,   u' = u + Δt v⁺.
+///
+/// M⁻¹K and T are symmetric in the product of M. Growth sets in with u' = −u, where Δt² (1 + k (1 − T)) M⁻¹K u =
+/// 2 (1 + T + k (1 − T)) u. For one particle T is a projection, with XPIC too: of its fastest mode ∇w/w its affine
+/// velocity holds the part α = 1/(S D), D = Σ w (x_i − x_p)², and nothing holds the rest, so that for every k
+///
+///   (ω Δt)² < 4 / (2 − α),   α = 0 without an affine velocity.
+///
+/// With ν = 0.3 in plane strain by affine transfers: GIMP 0.52, quadratic 0.59, cubic 0.92, by others 0.42, 0.48, 0.67.
+/// Plates of ten cells, at rest anywhere: affine FLIP from 0.59, 0.77, 1.24 on, FLIP from 0.55, 0.68, 1.02 on.
 fn stable_number(scene: &Scene, elastic: &Elastic) -> f64 {
     let (kernel, transfer) = (scene.solver.kernel, scene.solver.transfer);
-    // S, and the part of a particle's fastest mode that its affine velocity holds.
-    let (spread, held) = if kernel == Kernel::Bilinear {
-        (BILINEAR_SPREAD, 0.0)
+    let is_affine = matches!(transfer, Transfer::Apic | Transfer::Aflip);
+    // S (2 − α).
+    let spread = if kernel == Kernel::Bilinear {
+        BILINEAR_SPREAD * if transfer == Transfer::Aflip { 2.0 } else { 1.0 }
     } else {
         let half_size = (0.5 * scene.particle_spacing / scene.cell_size).min(0.5);
-        let at = |k: usize| {
-            let stencil = axis_stencil(kernel, half_size, (k as f64 + 0.5) / PLACES as f64);
-            let parts = || stencil.weight.iter().zip(&stencil.gradient).enumerate().filter(|(_, (w, _))| **w > 0.0);
-            let mean: f64 = parts().map(|(a, (w, _))| w * a as f64).sum();
-            let inertia: f64 = parts().map(|(a, (w, _))| w * (a as f64 - mean).powi(2)).sum();
-            let spread: f64 = parts().map(|(_, (w, g))| g * g / w).sum();
-            (spread, 1.0 / (spread * inertia))
-        };
-        (0..PLACES).map(at).fold((0.0, 1.0), |worst, here| if here.0 > worst.0 { here } else { worst })
+        (0..PLACES)
+            .map(|k| spread_at(k as f64 / PLACES as f64 + BESIDE, kernel, half_size, is_affine))
+            .fold(0.0, f64::max)
     };
-    let kept = if transfer == Transfer::Aflip { affine_flip_limit(held) } else { 1.0 };
-    2.0 * kept / (spread * (1.0 + elastic.lambda / (elastic.lambda + 2.0 * elastic.mu))).sqrt()
+    2.0 / (spread * (1.0 + (elastic.lambda / (elastic.lambda + 2.0 * elastic.mu)).abs())).sqrt()
 }
 
-/// Part of the stable step that is left with affine FLIP for a mode of which particles hold the part α.
-///
-/// Particles that keep all of their velocity take up α of what forces change, but the material moves with all of it:
-/// v' = v − α ω²Δt u, u' = u + Δt (v − ω²Δt u). Both eigenvalues are within the unit circle while (ωΔt)² < 4/(2 − α).
-/// The fastest mode of a particle is ∇w/w, of which the affine velocity holds α = 1/(S D), D = Σ w (x_i − x_p)²: .67
-/// with the quadratic kernel, .94 with the cubic one. A plate with a crack that was brought to rest at .9 of the limit
-/// without this held 240 times its strain energy after 14,000 steps, in its corners.
-fn affine_flip_limit(held: f64) -> f64 {
-    (1.0 / (2.0 - held.min(1.0))).sqrt()
+/// S (2 − α) of a particle at `x` [cells], as in [`stable_number`] [–].
+fn spread_at(x: f64, kernel: Kernel, half_size: f64, is_affine: bool) -> f64 {
+    let stencil = axis_stencil(kernel, half_size, x);
+    let parts = || stencil.weight.iter().zip(&stencil.gradient).enumerate().filter(|(_, (w, _))| **w > 0.0);
+    let mean: f64 = parts().map(|(a, (w, _))| w * a as f64).sum();
+    let inertia: f64 = parts().map(|(a, (w, _))| w * (a as f64 - mean).powi(2)).sum();
+    let spread: f64 = parts().map(|(_, (w, g))| g * g / w).sum();
+    if is_affine { 2.0 * spread - 1.0 / inertia } else { 2.0 * spread }
 }
 
 /// Bounds on the time step.
@@ -68,31 +78,35 @@ impl Stability {
         Self { number: setup.elastic.iter().map(|elastic| stable_number(&setup.scene, elastic)).collect() }
     }
 
-    /// Largest stable step for the present state [s]: h N / (c + |v|) with the fastest wave c (stretch and hardening
-    /// included) and the fastest particle; no particle moves by more than half a cell.
+    /// Largest stable step for the present state [s]: h N / c with the fastest wave c (stretch and hardening included);
+    /// no particle moves by more than [`LONGEST_WAY`].
+    ///
+    /// A body that flies is as stable as one at rest, at any speed: plates of ten cells to .6 c. Only with the bilinear
+    /// kernel, whose gradients jump between cells, its speed adds to that of waves.
     pub(super) fn largest_step(&self, setup: &Setup, points: &Points) -> f64 {
         let h = setup.scene.cell_size;
-        let mut rate = 0.0_f64;
-        let mut speed_squared = 0.0_f64;
-        for point in &points.point {
-            speed_squared = speed_squared.max(point.velocity.norm_squared());
-        }
-        // Held particles may stand still now and move in the next step.
-        for support in &setup.scene.supports {
-            let factor = support.curve.points.iter().fold(1.0_f64, |a, p| a.max(p.1.abs()));
-            let v: f64 = support.velocity.iter().flatten().map(|v| v * v).sum();
-            speed_squared = speed_squared.max(v * factor * factor);
-        }
-        let speed = speed_squared.sqrt();
+        let speed = largest_speed(setup, points);
+        let carried = if setup.scene.solver.kernel == Kernel::Bilinear { speed } else { 0.0 };
+        let mut rate = speed / (LONGEST_WAY * h);
         for (p, point) in points.point.iter().enumerate() {
             let material = setup.particles.material[p] as usize;
             // The tangent of P Fᵀ grows with the square of the largest stretch.
             let [stretch, _] = principal_stretches(&point.elastic_gradient);
             let hardening = points.plastic.get(p).map_or(1.0, |part| part.hardening.sqrt());
             let wave = setup.elastic[material].dilatational_wave_speed() * stretch.max(1.0) * hardening;
-            rate = rate.max((wave + speed) / (self.number[material] * h));
+            rate = rate.max((wave + carried) / (self.number[material] * h));
         }
-        let step = 1.0 / rate;
-        if speed > 0.0 { step.min(0.5 * h / speed) } else { step }
+        1.0 / rate
     }
+}
+
+/// Speed of the fastest particle or support [m/s]: what is held may stand still now and move in the next step.
+fn largest_speed(setup: &Setup, points: &Points) -> f64 {
+    let of_particles = points.point.iter().map(|point| point.velocity.norm_squared()).fold(0.0, f64::max);
+    let of_supports = setup.scene.supports.iter().map(|support| {
+        let factor = support.curve.points.iter().fold(1.0_f64, |a, p| a.max(p.1.abs()));
+        let v: f64 = support.velocity.iter().flatten().map(|v| v * v).sum();
+        v * factor * factor
+    });
+    of_supports.fold(of_particles, f64::max).sqrt()
 }

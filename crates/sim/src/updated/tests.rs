@@ -489,6 +489,58 @@ fn the_stable_step_is_stable_and_twice_it_is_not() {
     }
 }
 
+/// Whether a square of `count` by `count` particles in cells of 0.1 m, at `place` of a cell [cells] and turned by
+/// `angle` [rad], that trembles goes on as it is, in steps of so many times the stable one.
+fn is_calm(scene: &Scene, count: usize, (place, angle): ([f64; 2], f64), factor: f64) -> bool {
+    let mut scene = scene.clone();
+    let side = 0.05 * count as f64;
+    scene.bodies[0].region = rectangle([0.0, 0.0], [side, side]);
+    let mut run = Run::new(&scene);
+    let turn = nalgebra::Rotation2::new(angle);
+    for (k, point) in run.solver.points.point.iter_mut().enumerate() {
+        let noise = |salt: f64| 1e-7 * (12.9898 * (k as f64 + 1.0) * salt).sin();
+        point.position = turn * (point.position - Vector::new(0.025, 0.025)) + 0.1 * Vector::from(place);
+        point.elastic_gradient = Matrix::new(noise(1.0), noise(2.0), noise(3.0), noise(5.0));
+    }
+    // Without turns.
+    let strain = |run: &Run| -> f64 {
+        let points = run.solver.points.point.iter();
+        points.map(|point| (point.elastic_gradient + point.elastic_gradient.transpose()).norm_squared()).sum()
+    };
+    let first = strain(&run);
+    let time_step = factor * run.solver.stable_time_step();
+    for _ in 0..600 {
+        if run.solver.step(&run.cracks, run.time, time_step, &mut |_| ()).is_err() {
+            return false;
+        }
+        run.time += time_step;
+    }
+    strain(&run) < 1e3 * first
+}
+
+/// Truth: the eigenvalues of one particle. Shards of 1 to 9 particles tremble as they did below the stable step,
+/// wherever they are; above it one that is alone explodes where it is stiffest.
+#[test]
+fn the_stable_step_is_that_of_a_particle_alone() {
+    let transfers = TRANSFERS.into_iter().chain([Transfer::Aflip]);
+    for (transfer, poisson_ratio) in transfers.flat_map(|transfer| [0.3, -0.6].map(|ratio| (transfer, ratio))) {
+        for kernel in [Kernel::Gimp, Kernel::Quadratic, Kernel::Cubic] {
+            let mut scene = free_body(rectangle([0.0, 0.0], [1.0, 1.0]), 0.05);
+            scene.materials[0].poisson_ratio = poisson_ratio;
+            (scene.solver.kernel, scene.solver.transfer) = (kernel, transfer);
+            for k in 0..42 {
+                let random = |salt: f64| (43.7585 * (f64::from(k) + salt)).sin().abs();
+                let place = [random(0.1), random(0.7)];
+                let count = 1 + k as usize % 3;
+                let said = format!("{kernel:?}, {transfer:?}, ν {poisson_ratio}, {count} at {place:?}");
+                assert!(is_calm(&scene, count, (place, 2.0 * random(0.4)), 0.99), "{said}");
+            }
+            let explodes = |k: u32| !is_calm(&scene, 1, ([f64::from(k) / 64.0 + 1e-3; 2], 0.0), 1.03);
+            assert!((0..64).any(explodes), "{kernel:?}, {transfer:?}, ν {poisson_ratio} is stable beyond the limit");
+        }
+    }
+}
+
 /// Truth: energy, as above, with a tip at every kind of place between two columns of particles: fields of next to no
 /// mass beside it.
 #[test]
