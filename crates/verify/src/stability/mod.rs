@@ -8,6 +8,7 @@ mod neighbours;
 mod plates;
 mod step_limits;
 mod time_steps;
+mod toughness_jumps;
 mod transfers;
 
 use fissure_sim::SimulationError;
@@ -40,7 +41,7 @@ pub struct StabilityMap {
 }
 
 /// All maps.
-pub const STABILITY_MAPS: [StabilityMap; 15] = [
+pub const STABILITY_MAPS: [StabilityMap; 16] = [
     plates::CRACK_LENGTH,
     plates::LIGAMENT,
     plates::TURN,
@@ -49,6 +50,7 @@ pub const STABILITY_MAPS: [StabilityMap; 15] = [
     plates::LENGTHS,
     neighbours::NEAR_THINGS,
     neighbours::PRESSED,
+    toughness_jumps::TOUGHNESS_JUMPS,
     time_steps::TOTAL,
     time_steps::UPDATED,
     step_limits::REAL_LIMIT,
@@ -114,6 +116,9 @@ mod tests {
             ("near-things", 5.0, 5.0, 0.0, 0.02),
             ("near-things", 2.0, 5.0, 0.05, 0.3),
             ("pressed", 0.3, 3.0, 0.0, 0.02),
+            ("toughness-jump", 1.05, 50.0, 0.0, 0.1),
+            ("toughness-jump", 1.6, 40.0, 0.0, 0.1),
+            ("toughness-jump", 2.0, 60.0, 0.8, 1.5),
             ("real-limit", 2.0, 1.0, 0.0, 0.05),
             ("ringing", 2.0, 2.0, 0.0, 0.06),
             ("ringing", 3.0, 2.0, 0.06, 0.3),
