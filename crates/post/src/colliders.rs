@@ -64,6 +64,7 @@ fn collider_mesh(
         texture_origin: low,
         texture_size: (high - low).amax(),
         relief: None,
+        bevel: None,
     };
     let area = 0.5 * shapes.iter().flatten().map(|c| twice_area(c)).sum::<i128>() as f64 * grid.step * grid.step;
     let content = Content::Solid { area, thickness: options.thickness, slack: 0.0 };

@@ -1,5 +1,6 @@
 //! The bodies as solids, with or without their cracks.
 
+use crate::bevel::BevelSize;
 use crate::body_names::body_names;
 use crate::boolean::{Edge, Shape, material, twice_area};
 use crate::closed::shifts as closed;
@@ -296,11 +297,19 @@ impl<'a> Solids<'a> {
             texture_origin: self.scene.bodies[body as usize].region.bounds().0,
             texture_size: size(self.scene, body),
             relief: self.relief,
+            bevel: self.bevel(body),
         }
     }
 
-    /// The solid of some polygons, with what their corners within carry; none of none. Its walls are smooth where it is
-    /// no solid with rough ones: faces that are open by a few grid steps may meet there.
+    /// How edges are bevelled, if they are.
+    fn bevel(&self, body: u32) -> Option<BevelSize> {
+        let step = self.grids[body as usize].step;
+        let least = self.options.shortest_edge * size(self.scene, body) / step;
+        (self.options.bevel > 0.0).then_some(BevelSize { width: self.options.bevel / step, least })
+    }
+
+    /// The solid of some polygons, with what their corners within carry; none of none. Its walls are smooth and its
+    /// edges sharp where it is no solid otherwise: faces that are open by a few grid steps may meet there.
     fn mesh(&self, body: u32, piece: u32, extrusion: &Extrusion<'_>, caps: Vec<(Cap, Vec<Carried>)>) -> Option<Mesh> {
         let area = caps.iter().map(|(cap, _)| area(&cap.shape, extrusion.grid)).sum();
         let made = |extrusion: &Extrusion<'_>| {
@@ -312,8 +321,8 @@ impl<'a> Solids<'a> {
             mesh
         };
         let mut mesh = made(extrusion);
-        if extrusion.relief.is_some() && mesh.check().is_err() {
-            mesh = made(&Extrusion { relief: None, ..*extrusion });
+        if (extrusion.relief.is_some() || extrusion.bevel.is_some()) && mesh.check().is_err() {
+            mesh = made(&Extrusion { relief: None, bevel: None, ..*extrusion });
         }
         (!caps.is_empty()).then_some(mesh)
     }

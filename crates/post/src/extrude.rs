@@ -1,5 +1,6 @@
 //! From a polygon to a solid: two caps and the walls between them.
 
+use crate::bevel::{BevelCorner, BevelSize};
 use crate::boolean::Edge;
 use crate::mesh::{Mesh, Vertex};
 use crate::relief::Relief;
@@ -26,15 +27,23 @@ pub(crate) struct Extrusion<'a> {
     pub(crate) texture_size: f64,
     /// How rough the walls of cracks are; none: smooth.
     pub(crate) relief: Option<&'a Relief>,
+    /// How the edges between walls of cracks and caps are bevelled; none: sharp.
+    pub(crate) bevel: Option<BevelSize>,
 }
 
 impl Extrusion<'_> {
     /// Adds the caps and walls of a polygon to `mesh`. `within`: what its corners within carry, in their order.
     pub(crate) fn solid(&self, cap: &Cap, within: &[Carried], mesh: &mut Mesh) {
-        self.caps(cap, within, mesh);
+        let bevel = self.bevel(cap);
+        self.caps(cap, within, &bevel, mesh);
+        let (mut first, mut removed) = (0, 0.0);
         for contour in &cap.shape {
-            self.walls(contour, true, mesh);
+            let corners = &bevel[first..first + contour.len()];
+            self.walls(contour, true, corners, mesh);
+            removed += self.strips(contour, corners, mesh);
+            first += contour.len();
         }
+        mesh.may_differ(removed);
     }
 
     /// What the corners of the polygon carry, contour by contour.
@@ -43,8 +52,12 @@ impl Extrusion<'_> {
     }
 
     /// Both caps; texture coordinates from the rest position, so that textures do not swim.
-    fn caps(&self, cap: &Cap, within: &[Carried], mesh: &mut Mesh) {
+    fn caps(&self, cap: &Cap, within: &[Carried], bevel: &[BevelCorner], mesh: &mut Mesh) {
         let mut corners = self.outer(cap);
+        for ((point, carried), bevel) in corners.iter_mut().zip(bevel) {
+            *point = bevel.point;
+            carried.rest += bevel.at_rest;
+        }
         corners.extend(cap.within.iter().copied().zip(within.iter().copied()));
         for side in [1.0, -1.0] {
             let first = mesh.vertices.len() as u32;
@@ -65,14 +78,15 @@ impl Extrusion<'_> {
     }
 
     /// The walls on the edges of `contour`, which is a ring if `closed`; texture coordinates by arc length at rest.
-    pub(crate) fn walls(&self, contour: &[Edge], closed: bool, mesh: &mut Mesh) {
+    /// `bevel`: its corners, if some may be bevelled.
+    pub(crate) fn walls(&self, contour: &[Edge], closed: bool, bevel: &[BevelCorner], mesh: &mut Mesh) {
         if let Some(relief) = self.relief
             && contour.iter().any(|edge| self.source(edge).slot == Slot::Inside)
         {
             return self.rough_walls(contour, closed, relief, mesh);
         }
         let count = contour.len();
-        let posts = self.posts(contour, closed);
+        let posts = self.posts(contour, closed, bevel);
         // Beginning at a seam, a smooth wall never has to close on vertices of its beginning.
         let seam = (0..count).find(|&i| posts[i][0] != posts[(i + count - 1) % count][1]).unwrap_or(0);
         let mut previous: Option<(Post, [u32; 2])> = None;
@@ -90,16 +104,19 @@ impl Extrusion<'_> {
     }
 
     /// The vertical edges at the start and the end of each edge of `contour`, which is a ring if `closed`.
-    pub(crate) fn posts(&self, contour: &[Edge], closed: bool) -> Vec<[Post; 2]> {
+    pub(crate) fn posts(&self, contour: &[Edge], closed: bool, bevel: &[BevelCorner]) -> Vec<[Post; 2]> {
         let count = contour.len();
+        let drop = |corner: usize| bevel.get(corner % count).map_or(0.0, |corner| corner.drop);
         (0..count)
             .map(|i| {
                 let (edge, source) = (&contour[i], self.source(&contour[i]));
                 let before = (i > 0 || closed).then(|| &contour[(i + count - 1) % count]);
                 let after = (i + 1 < count || closed).then(|| &contour[(i + 1) % count]);
-                let post =
-                    |point, other| Post { point, carried: source.at(point), normal: self.corner_normal(edge, other) };
-                [post(edge.a, before), post(edge.b, after)]
+                let post = |point, other, corner| {
+                    let (carried, normal) = (source.at(point), self.corner_normal(edge, other));
+                    Post { point, carried, normal, drop: drop(corner) }
+                };
+                [post(edge.a, before, i), post(edge.b, after, i + 1)]
             })
             .collect()
     }
@@ -108,7 +125,8 @@ impl Extrusion<'_> {
     pub(crate) fn post(&self, post: &Post, mesh: &mut Mesh) -> [u32; 2] {
         let place = self.grid.place(post.point);
         let first = mesh.vertices.len() as u32;
-        for z in [-0.5 * self.thickness, 0.5 * self.thickness] {
+        let end = 0.5 * self.thickness - post.drop;
+        for z in [-end, end] {
             mesh.vertices.push(Vertex {
                 position: [place.x, place.y, z],
                 normal: [post.normal.x, post.normal.y, 0.0],
@@ -144,6 +162,8 @@ pub(crate) struct Post {
     point: GridPoint,
     pub(crate) carried: Carried,
     normal: Vector,
+    /// How far from the caps it ends [m].
+    drop: f64,
 }
 
 /// Outward unit normal of the wall on `edge`: to its right.

@@ -41,6 +41,7 @@ fn face_mesh(scene: &Scene, crack: &CrackFrame, options: &PostOptions, relief: O
         texture_origin: low,
         texture_size: (high - low).amax(),
         relief,
+        bevel: None,
     };
     let name = object_name(&body_names(scene)[crack.body as usize], "crack", crack.crack);
     let mut mesh = Mesh::new(name, crack.crack, Content::Surface);
@@ -52,7 +53,7 @@ fn face_mesh(scene: &Scene, crack: &CrackFrame, options: &PostOptions, relief: O
             .map(|i| Edge { a: sources[i].a, b: sources[i].b, source: SourceIndex(i as u32) })
             .filter(|edge| edge.a != edge.b)
             .collect();
-        extrusion.walls(&edges, false, &mut mesh);
+        extrusion.walls(&edges, false, &[], &mut mesh);
     }
     mesh
 }

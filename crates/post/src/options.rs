@@ -27,6 +27,8 @@ pub struct PostOptions {
     pub shortest_edge: f64,
     /// How rough the walls of cracks are; none: smooth.
     pub roughness: Option<Roughness>,
+    /// How wide the edges between walls of cracks and caps are bevelled [m]; 0: not at all.
+    pub bevel: f64,
     /// Whether meshes have a second set of texture coordinates, in metres.
     pub uv_in_metres: bool,
     /// Length of the edges within caps, at most; none: as long as may be [m].
@@ -54,6 +56,7 @@ impl From<&OutputSettings> for PostOptions {
             opening: output.opening.clone(),
             explode: output.explode.clone(),
             roughness: output.surfaces.roughness,
+            bevel: output.surfaces.bevel,
             uv_in_metres: output.surfaces.uv_in_metres,
             shortest_edge: SHORTEST_EDGE,
             cap_size: output.surfaces.cap_size,
@@ -89,6 +92,7 @@ impl PostOptions {
         }
         not_negative("smallest_fragment", self.smallest_fragment)?;
         not_negative("smoothing", self.smoothing)?;
+        not_negative("bevel", self.bevel)?;
         not_negative("shortest_edge", self.shortest_edge)?;
         not_negative("crease_angle", self.crease_angle)
     }

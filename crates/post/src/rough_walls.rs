@@ -45,7 +45,7 @@ impl Extrusion<'_> {
     /// The walls on the edges of `contour`, as [`Extrusion::walls`] makes them, those of cracks with `relief`.
     pub(crate) fn rough_walls(&self, contour: &[Edge], closed: bool, relief: &Relief, mesh: &mut Mesh) {
         let count = contour.len();
-        let posts = self.posts(contour, closed);
+        let posts = self.posts(contour, closed, &[]);
         let seam = (0..count).find(|&i| posts[i][0] != posts[(i + count - 1) % count][1]).unwrap_or(0);
         let first = mesh.vertices.len();
         let new = mesh.triangles[Slot::Inside as usize].len();

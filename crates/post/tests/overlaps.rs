@@ -5,7 +5,7 @@ mod common;
 #[path = "common/winding.rs"]
 mod winding;
 
-use common::{Opened, frame, options, scene, square};
+use common::{Opened, frame, options, path, scene, square};
 use fissure_post::{Mesh, Slot, post_frame};
 use fissure_scene::{CrackEnd, Point, Vector};
 use proptest::prelude::*;
@@ -40,17 +40,6 @@ fn common_area(some: &[Vec<Point>], others: &[Vec<Point>]) -> f64 {
         }
     }
     common
-}
-
-/// Points from `a` to `b`, those between moved by `wander` across.
-fn path(a: Point, b: Point, wander: &[f64]) -> Vec<Point> {
-    let last = wander.len() - 1;
-    let across = Vector::new(a.y - b.y, b.x - a.x).normalize();
-    let place = |(k, off): (usize, &f64)| {
-        let off = if k == 0 || k == last { 0.0 } else { *off };
-        a + (k as f64 / last as f64) * (b - a) + off * across
-    };
-    wander.iter().enumerate().map(place).collect()
 }
 
 fn motions(count: usize) -> impl Strategy<Value = Vec<Vector>> {

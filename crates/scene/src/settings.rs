@@ -409,6 +409,8 @@ pub struct SurfaceSettings {
     pub smoothing: f64,
     /// How rough the walls of cracks are shown; none: as the cracks are.
     pub roughness: Option<Roughness>,
+    /// How wide the edges between walls of cracks and caps are bevelled [m]; 0: not at all.
+    pub bevel: f64,
     /// Whether meshes have a second set of texture coordinates, in metres.
     pub uv_in_metres: bool,
 }
@@ -426,7 +428,8 @@ pub struct Roughness {
 
 impl Default for SurfaceSettings {
     fn default() -> Self {
-        Self { cap_size: None, cut: Cut::default(), smoothing: SMOOTHING, roughness: None, uv_in_metres: false }
+        let cut = Cut::default();
+        Self { cap_size: None, cut, smoothing: SMOOTHING, roughness: None, bevel: 0.0, uv_in_metres: false }
     }
 }
 

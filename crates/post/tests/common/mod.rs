@@ -1,6 +1,8 @@
 //! Frames with known geometry.
 #![allow(dead_code, unreachable_pub)]
 
+pub mod cracked_square;
+
 use fissure_post::PostOptions;
 use fissure_scene::{
     Body, CrackEnd, CrackFrame, Curve, Formulation, Frame, FrameSettings, GrowthSettings, JMethod, Kernel, Material,
@@ -228,4 +230,15 @@ pub fn halves(size: f64, motions: [(f64, Vector); 2]) -> (Scene, Frame) {
     }
     frame.particles = particles;
     (scene(region), frame)
+}
+
+/// Points from `a` to `b`, those between moved by `wander` across.
+pub fn path(a: Point, b: Point, wander: &[f64]) -> Vec<Point> {
+    let last = wander.len() - 1;
+    let across = Vector::new(a.y - b.y, b.x - a.x).normalize();
+    let place = |(k, off): (usize, &f64)| {
+        let off = if k == 0 || k == last { 0.0 } else { *off };
+        a + (k as f64 / last as f64) * (b - a) + off * across
+    };
+    wander.iter().enumerate().map(place).collect()
 }

@@ -242,6 +242,10 @@ pub struct OutputKeys {
     pub smoothing: f64,
     /// How rough the walls of cracks are shown. Default: as the cracks are.
     pub roughness: Option<RoughnessKeys>,
+    /// Width in m of a bevel on the edges between walls of cracks and caps: at most a quarter of a cell and of the
+    /// thickness. Default: 0, none.
+    #[schemars(transform = WIDTH.bounds())]
+    pub bevel: f64,
     /// Whether meshes have a second set of texture coordinates, in metres at rest, in GLB, PLY and USD. Default: false.
     pub uv_in_metres: bool,
     /// How wide cracks are shown. Default: as they are.
@@ -312,6 +316,7 @@ impl Default for OutputKeys {
             cut: Cut::default(),
             smoothing: SMOOTHING,
             roughness: None,
+            bevel: 0.0,
             uv_in_metres: false,
             opening: None,
             explode: None,

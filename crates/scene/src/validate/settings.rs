@@ -24,6 +24,8 @@ const MOST_CAP_TRIANGLES: f64 = 4e6;
 const ROUGHNESS_LENGTH: f64 = 4.0;
 /// Most lengths of a relief along the longest side of a body, and in the thickness.
 const MOST_RELIEFS: f64 = 1000.0;
+/// Widest bevel, as a part of a cell and of the thickness.
+const BEVEL_SHARE: f64 = 0.25;
 /// Area of an equilateral triangle, over the square of its side.
 const EQUILATERAL: f64 = 0.433;
 
@@ -173,6 +175,7 @@ impl Scene {
         SMOOTHING_CELLS.check(KeyPath::setting("output", "smoothing"), "`smoothing`", o.surfaces.smoothing)?;
         o.surfaces.cap_size.map_or(Ok(()), |size| self.validate_cap_size(size))?;
         o.surfaces.roughness.as_ref().map_or(Ok(()), |roughness| self.validate_roughness(roughness))?;
+        self.validate_bevel()?;
         if let Some(opening) = &o.opening {
             let path = KeyPath::setting("output", "opening");
             let points = &opening.factor.points;
@@ -210,6 +213,23 @@ impl Scene {
                 format!("walls of {} m with a relief {length} m long have too many triangles", short(longest));
             let remedy = format!("make `length` at least {:.2e}", longest / MOST_RELIEFS);
             return Err(SceneFault::new(path("length"), message, remedy));
+        }
+        Ok(())
+    }
+
+    /// A bevel has to leave something of walls and of caps; walls with a relief have none.
+    fn validate_bevel(&self) -> Check {
+        let path = || KeyPath::setting("output", "bevel");
+        let (bevel, thickness) = (self.output.surfaces.bevel, self.output.thickness);
+        WIDTH.check(path(), "`bevel`", bevel)?;
+        let widest = BEVEL_SHARE * self.cell_size.min(thickness);
+        if bevel > widest {
+            let message = format!("a bevel {bevel} m wide is more than a quarter of a cell or of the thickness");
+            return Err(SceneFault::new(path(), message, format!("make it at most {widest}")));
+        }
+        if bevel > 0.0 && self.output.surfaces.roughness.is_some() {
+            let message = format!("walls with `roughness` have no bevel, but `bevel` is {bevel}");
+            return Err(SceneFault::new(path(), message, "leave out one of the two"));
         }
         Ok(())
     }

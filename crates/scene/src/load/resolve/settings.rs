@@ -117,6 +117,7 @@ impl<'d> Resolver<'d> {
                 cut: keys.cut,
                 smoothing: keys.smoothing,
                 roughness: keys.roughness.as_ref().map(|keys| roughness(keys, cell_size)),
+                bevel: keys.bevel,
                 uv_in_metres: keys.uv_in_metres,
             },
             opening: keys.opening.as_ref().map(|keys| opening(keys, frames, cell_size)).transpose()?,

@@ -1,0 +1,219 @@
+//! Bevelled edges: where the walls of cracks meet the caps, strips take the edge off.
+//!
+//! ```text
+//!               a'┌───── cap
+//!     strip     ╱
+//!            a │   material
+//!       wall   │
+//! ```
+//! The corners of caps move inwards and the walls end as much below them, so that strips lie at 45 degrees. Seen from
+//! above, strips and cap fill the polygon without folds: what was a solid stays one. Where that leaves no room, between
+//! cracks or along segments that are short, strips are narrower; at outlines, tips and sharp corners they end.
+
+use crate::boolean::Edge;
+use crate::extrude::{Extrusion, wall_normal};
+use crate::mesh::{Mesh, Vertex};
+use crate::slot::Slot;
+use crate::snap::GridPoint;
+use crate::source::Carried;
+use crate::triangulate::Cap;
+use fissure_scene::Vector;
+
+/// How wide bevels are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct BevelSize {
+    /// Width of strips, seen from above or from the side, in grid steps.
+    pub(crate) width: f64,
+    /// Strips are not narrower, and edges of caps do not become shorter, in grid steps.
+    pub(crate) least: f64,
+}
+
+/// Corners at which a contour turns by more than this have no bevel: its corner would lie twice as far in, cosine.
+const SHARP: f64 = -0.5;
+/// Triangles of caps keep this part of their area.
+const KEPT: f64 = 0.25;
+/// A width that leaves no room is narrowed to this part of it.
+const NARROWED: f64 = 0.7;
+
+/// A corner of a cap that may have moved inwards.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct BevelCorner {
+    /// Where the cap has its corner.
+    pub(crate) point: GridPoint,
+    /// By how much the material there lies elsewhere at rest [m].
+    pub(crate) at_rest: Vector,
+    /// How far below the cap the wall ends [m].
+    pub(crate) drop: f64,
+}
+
+impl Extrusion<'_> {
+    /// The corners of a cap, contour after contour; as they are where edges are not bevelled.
+    pub(crate) fn bevel(&self, cap: &Cap) -> Vec<BevelCorner> {
+        let edges: Vec<&Edge> = cap.shape.iter().flatten().collect();
+        let mut widths = vec![0.0; edges.len()];
+        let mut ways = vec![Vector::zeros(); edges.len()];
+        if let Some(size) = self.bevel {
+            let mut first = 0;
+            for contour in &cap.shape {
+                for i in 0..contour.len() {
+                    let before = &contour[(i + contour.len() - 1) % contour.len()];
+                    if let Some(way) = self.inwards(before, &contour[i]) {
+                        (widths[first + i], ways[first + i]) = (size.width, way);
+                    }
+                }
+                first += contour.len();
+            }
+            narrow(cap, &ways, &mut widths, size.least);
+        }
+        let corner = |k: usize| {
+            let way = widths[k] * ways[k];
+            let drop = widths[k] * self.grid.step;
+            BevelCorner { point: moved(edges[k].a, way), at_rest: self.grid.step * self.at_rest(edges[k], way), drop }
+        };
+        (0..edges.len()).map(corner).collect()
+    }
+
+    /// Where the corner between two edges goes for a bevel one step wide; none where there is none.
+    fn inwards(&self, before: &Edge, after: &Edge) -> Option<Vector> {
+        let is_inside = [before, after].iter().all(|edge| self.source(edge).slot == Slot::Inside);
+        let normals = [before, after].map(wall_normal);
+        let cosine = normals[0].dot(&normals[1]);
+        (is_inside && cosine > SHARP).then(|| -(normals[0] + normals[1]) / (1.0 + cosine))
+    }
+
+    /// A way in the material beside an edge, as it is at rest.
+    fn at_rest(&self, edge: &Edge, way: Vector) -> Vector {
+        let out = wall_normal(edge);
+        let along = Vector::new(-out.y, out.x);
+        let Some(rest) = self.source(edge).direction_at_rest() else { return Vector::zeros() };
+        way.dot(&along) * rest + way.dot(&out) * Vector::new(rest.y, -rest.x)
+    }
+
+    /// Adds the strips along `contour`, whose corners are `corners`. Returns the volume that they take off [m³].
+    pub(crate) fn strips(&self, contour: &[Edge], corners: &[BevelCorner], mesh: &mut Mesh) -> f64 {
+        let (first, new) = (mesh.vertices.len(), mesh.triangles[Slot::Inside as usize].len());
+        let (count, mut removed) = (contour.len(), 0.0);
+        let mut previous: Option<(Carried, Vector, [u32; 4])> = None;
+        for (i, edge) in contour.iter().enumerate() {
+            let (source, [p, q]) = (self.source(edge), [corners[i], corners[(i + 1) % count]]);
+            if source.slot != Slot::Inside || (p.drop == 0.0 && q.drop == 0.0) {
+                previous = None;
+                continue;
+            }
+            let (start, end, normal) = (source.at(edge.a), source.at(edge.b), wall_normal(edge));
+            let a = match previous {
+                Some((carried, other, vertices))
+                    if carried == start && other.dot(&normal) >= self.crease_angle.cos() =>
+                {
+                    vertices
+                }
+                _ => self.rail(edge.a, &p, &start, mesh),
+            };
+            let b = self.rail(edge.b, &q, &end, mesh);
+            let triangles = &mut mesh.triangles[Slot::Inside as usize];
+            let [over_both, over_start] =
+                areas(edge, p.point, q.point).map(|twice| 0.5 * twice * self.grid.step.powi(2));
+            if q.drop > 0.0 {
+                triangles.extend([[a[0], b[0], b[1]], [a[2], b[3], b[2]]]);
+                removed += 2.0 * over_both * (p.drop + q.drop) / 3.0;
+            }
+            if p.drop > 0.0 {
+                triangles.extend([[a[0], b[1], a[1]], [a[2], a[3], b[3]]]);
+                removed += 2.0 * over_start * p.drop / 3.0;
+            }
+            previous = Some((end, normal, b));
+        }
+        mesh.set_normals(first, Slot::Inside, new);
+        removed
+    }
+
+    /// Adds the vertices of a strip at a corner: at the end of the wall and at the cap, in front and at the back.
+    fn rail(&self, wall: GridPoint, corner: &BevelCorner, carried: &Carried, mesh: &mut Mesh) -> [u32; 4] {
+        let half = 0.5 * self.thickness;
+        let mut vertex = |point: GridPoint, z: f64, height: f64| {
+            let place = self.grid.place(point);
+            mesh.vertices.push(Vertex {
+                position: [place.x, place.y, z],
+                normal: [0.0; 3],
+                texture: [carried.arc / self.texture_size, height / self.texture_size],
+                velocity: [carried.velocity.x, carried.velocity.y, 0.0],
+            });
+            mesh.vertices.len() as u32 - 1
+        };
+        // Texture goes on over the slope as it does along the wall.
+        let (end, slope) = (half - corner.drop, corner.drop * std::f64::consts::SQRT_2);
+        let front = vertex(wall, end, end + half);
+        let back = vertex(wall, -end, half - end);
+        if corner.drop == 0.0 {
+            return [front, front, back, back];
+        }
+        [front, vertex(corner.point, half, end + half + slope), back, vertex(corner.point, -half, half - end - slope)]
+    }
+}
+
+fn moved(point: GridPoint, way: Vector) -> GridPoint {
+    GridPoint::new(point.x + way.x.round() as i64, point.y + way.y.round() as i64)
+}
+
+/// Twice the areas, in squared grid steps, of the two triangles of the strip along an edge whose ends are `p` and `q`
+/// at the cap: a b q and a q p.
+fn areas(edge: &Edge, p: GridPoint, q: GridPoint) -> [f64; 2] {
+    [twice(edge.a, edge.b, q), twice(edge.a, q, p)]
+}
+
+fn twice(a: GridPoint, b: GridPoint, c: GridPoint) -> f64 {
+    ((b.x - a.x) as f64) * ((c.y - a.y) as f64) - ((b.y - a.y) as f64) * ((c.x - a.x) as f64)
+}
+
+/// Makes the `widths` at the corners of a cap, which go `ways` per width, so small that its triangles and those of the
+/// strips keep their sense. A width below `least` grid steps becomes none.
+fn narrow(cap: &Cap, ways: &[Vector], widths: &mut [f64], least: f64) {
+    let old: Vec<GridPoint> = cap.corners().collect();
+    let distance = |p: GridPoint, q: GridPoint| ((q.x - p.x) as f64).hypot((q.y - p.y) as f64);
+    loop {
+        let outer = |k: usize| widths.get(k).is_some_and(|width| *width > 0.0);
+        let new: Vec<GridPoint> =
+            (0..old.len()).map(|k| if outer(k) { moved(old[k], widths[k] * ways[k]) } else { old[k] }).collect();
+        let mut is_narrow = vec![false; widths.len()];
+        let mut narrow_at = |k: usize| {
+            if outer(k) {
+                is_narrow[k] = true;
+            }
+        };
+        for triangle in &cap.triangles {
+            let corners = triangle.map(|k| k as usize);
+            if !corners.into_iter().any(outer) {
+                continue;
+            }
+            let ([a, b, c], [p, q, r]) = (corners.map(|k| old[k]), corners.map(|k| new[k]));
+            let is_short = |before: f64, after: f64| after < least.min(before);
+            let is_cramped = twice(p, q, r) <= KEPT * twice(a, b, c).max(0.0)
+                || is_short(distance(a, b), distance(p, q))
+                || is_short(distance(b, c), distance(q, r))
+                || is_short(distance(c, a), distance(r, p));
+            if is_cramped {
+                corners.into_iter().for_each(&mut narrow_at);
+            }
+        }
+        let mut first = 0;
+        for contour in &cap.shape {
+            for (i, edge) in contour.iter().enumerate() {
+                let (p, q) = (first + i, first + (i + 1) % contour.len());
+                let [over_both, over_start] = areas(edge, new[p], new[q]);
+                if (outer(q) && over_both <= 0.0) || (outer(p) && over_start <= 0.0) {
+                    [p, q].into_iter().for_each(&mut narrow_at);
+                }
+            }
+            first += contour.len();
+        }
+        if !is_narrow.contains(&true) {
+            return;
+        }
+        for (width, is_narrow) in widths.iter_mut().zip(is_narrow) {
+            if is_narrow {
+                // A step or two would be lost in rounding.
+                *width = if NARROWED * *width < least.max(2.0) { 0.0 } else { NARROWED * *width };
+            }
+        }
+    }
+}

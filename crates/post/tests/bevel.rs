@@ -1,0 +1,78 @@
+//! Bevelled edges. Truth: closed form of what they take off, and no triangle of a solid goes through another one.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::cracked_square::{SIZE, cracked_square, cross, triangles};
+use common::{Opened, frame, options, path, scene, square};
+use fissure_post::{Mesh, PostOptions, Slot, post_frame};
+use fissure_scene::{CrackEnd, Frame, Point, Scene, Vector};
+use nalgebra::Vector3;
+use proptest::prelude::*;
+
+/// The solids with sharp and with bevelled edges.
+fn solids(scene: &Scene, frame: &Frame, bevel: f64) -> [Vec<Mesh>; 2] {
+    let sharp = PostOptions { thickness: 3.0, ..options(scene) };
+    let bevelled = PostOptions { bevel, ..sharp.clone() };
+    [sharp, bevelled].map(|options| post_frame(scene, frame, &options).unwrap().parts.remove(0).1)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+
+    /// Any bevel that may be asked for: solids are closed, as they are checked; walls that were drawn stay as they are;
+    /// no triangle goes through another one; and normals point out of the strips.
+    #[test]
+    fn bevelled_solids_do_not_cross(
+        trunk in proptest::collection::vec(-0.4..0.4_f64, 10..40),
+        branch in proptest::collection::vec(-0.3..0.3_f64, 6..24),
+        tip in proptest::collection::vec(-0.2..0.2_f64, 4..16),
+        opening in 0.1..0.6_f64, bevel in 0.01..0.75_f64,
+    ) {
+        let (scene, frame) = cracked_square(&trunk, &branch, &tip, opening);
+        let [before, after] = solids(&scene, &frame, bevel);
+        for (before, after) in before.iter().zip(&after) {
+            prop_assert!(after.triangle_count() > before.triangle_count() && after.volume() < before.volume());
+            let is_wall = |t: &[Vector3<f64>; 3]| t.iter().any(|p| p.z < 0.0) && t.iter().any(|p| p.z > 0.0);
+            let drawn = |mesh| triangles(mesh, Slot::Outside).into_iter().filter(is_wall).collect::<Vec<_>>();
+            prop_assert_eq!(drawn(before), drawn(after));
+            let all = [Slot::Inside, Slot::Outside].map(|slot| triangles(after, slot)).concat();
+            for (i, p) in triangles(after, Slot::Inside).iter().enumerate() {
+                for q in &all[i + 1..] {
+                    prop_assert!(!cross(p, q), "{:?} {:?}", p, q);
+                }
+            }
+            for triangle in after.slot(Slot::Inside) {
+                let [a, b, c] = triangle.map(|i| Vector3::from(after.vertices[i as usize].position));
+                let normal = (b - a).cross(&(c - a)).normalize();
+                for i in *triangle {
+                    prop_assert!(normal.dot(&Vector3::from(after.vertices[i as usize].normal)) > 0.0);
+                }
+            }
+        }
+    }
+
+    /// Truth: closed form. Along a straight wall of length L in segments of length s, bevels of width w take off two
+    /// prisms of area w²/2, which end in pyramids within the first and the last segment: w² (L − 4 s/3).
+    #[test]
+    fn bevels_take_off_two_prisms(parts in 10_usize..30, part_of_segment in 0.01..0.2_f64) {
+        let rest = path(Point::new(10.0, 0.0), Point::new(10.0, SIZE), &vec![0.0; parts + 1]);
+        let moved = |x: f64| vec![Vector::new(x, 0.0); rest.len()];
+        let crack = Opened {
+            above: moved(-0.1), below: moved(0.1), start: CrackEnd::Mouth, end: CrackEnd::Mouth, rest: rest.clone(),
+        };
+        let region = square(SIZE);
+        let mut frame = frame(&region, 2, &[crack]);
+        frame.particles.piece = frame.particles.rest.iter().map(|x| u32::from(x.x > 10.0)).collect();
+        let segment = SIZE / parts as f64;
+        let bevel = part_of_segment * segment;
+        let [before, after] = solids(&scene(region), &frame, bevel);
+        prop_assert_eq!(after.len(), 2);
+        for (before, after) in before.iter().zip(&after) {
+            let removed = (before.volume() - after.volume()) / (bevel * bevel);
+            // Segments are halved at most where caps need it.
+            let range = SIZE - 4.0 / 3.0 * segment - 1e-3..SIZE - 2.0 / 3.0 * segment + 1e-3;
+            prop_assert!(range.contains(&removed), "{} in {:?}", removed, range);
+        }
+    }
+}
