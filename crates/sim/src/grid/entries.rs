@@ -78,19 +78,19 @@ impl Entries {
     }
 
     /// Row of a particle, if it has one.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn row_of(&self, particle: usize) -> Option<usize> {
         let row = *self.row.get(particle)?;
         (row != NONE).then_some(row as usize)
     }
 
     /// Entries of a particle, if they are stored.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn of(&self, particle: usize) -> Option<&[Entry]> {
         self.row_of(particle).map(|row| self.of_row(row))
     }
 
-    #[inline]
+    #[inline(always)]
     fn of_row(&self, row: usize) -> &[Entry] {
         let first = self.first[row] as usize;
         &self.entries[first..first + self.count[row] as usize]

@@ -1,6 +1,6 @@
 //! From the grid to the particles: deformation, velocity, collision and advection (thesis 3.1.5 and 3.1.6).
 
-use super::gather::{FromGrid, Wanted};
+use super::gather::{BATCH, Batch, FromGrid, Wanted};
 use super::lattice::Lattice;
 use super::nodes::Nodes;
 use super::plastic::PlasticPart;
@@ -9,6 +9,7 @@ use super::setup::Setup;
 use crate::SimulationError;
 use crate::boundary::collider::PlacedObstacle;
 use crate::threads::prelude::*;
+use crate::wide::{Loop, run_widest};
 use fissure_scene::{Kernel, Matrix, Point, Transfer};
 
 /// Particles that one task takes.
@@ -82,14 +83,14 @@ impl ParticleStep<'_> {
     /// When a particle is no longer finite, is turned inside out, or moves by more than a cell.
     pub(super) fn advance(&self, points: &mut Points) -> Result<f64, Failure> {
         match self.from.lattice.kernel {
-            Kernel::Bilinear => self.all_tasks::<2>(points),
-            Kernel::Gimp | Kernel::Quadratic => self.all_tasks::<3>(points),
-            Kernel::Cubic => self.all_tasks::<4>(points),
+            Kernel::Bilinear => self.all_tasks::<2, 2>(points),
+            Kernel::Gimp | Kernel::Quadratic => self.all_tasks::<3, 4>(points),
+            Kernel::Cubic => self.all_tasks::<4, 4>(points),
         }
     }
 
     /// Cuts what all particles carry into tasks and runs them.
-    fn all_tasks<const W: usize>(&self, all: &mut Points) -> Result<f64, Failure> {
+    fn all_tasks<const W: usize, const L: usize>(&self, all: &mut Points) -> Result<f64, Failure> {
         let mut affine = all.affine.chunks_mut(CHUNK);
         let mut plastic = all.plastic.chunks_mut(CHUNK);
         let mut motion = all.motion.chunks_mut(CHUNK);
@@ -101,8 +102,7 @@ impl ParticleStep<'_> {
             motion: motion.next().unwrap_or_default(),
         };
         let tasks: Vec<Task<'_>> = all.point.chunks_mut(CHUNK).enumerate().map(cut).collect();
-        let FromGrid { setup, lattice, nodes } = self.from;
-        let run = |task: Task<'_>| run::<W>(setup, lattice, nodes, &self.obstacles, self.time_step, task);
+        let run = |task: Task<'_>| run_widest(TaskOfStep::<W, L> { step: self, task });
         let reports: Vec<Report> = if self.from.setup.is_parallel() {
             tasks.into_par_iter().map(run).collect()
         } else {
@@ -116,8 +116,25 @@ impl ParticleStep<'_> {
     }
 }
 
+/// A task of a step, for a kernel of `W` nodes along an axis, `L` numbers side by side.
+struct TaskOfStep<'a, 't, const W: usize, const L: usize> {
+    step: &'a ParticleStep<'a>,
+    task: Task<'t>,
+}
+
+impl<const W: usize, const L: usize> Loop for TaskOfStep<'_, '_, W, L> {
+    type Output = Report;
+
+    #[inline(always)]
+    fn run(self) -> Report {
+        let ParticleStep { from: FromGrid { setup, lattice, nodes }, obstacles, time_step } = self.step;
+        run_task::<W, L>(setup, lattice, nodes, obstacles, *time_step, self.task)
+    }
+}
+
 /// Runs a task. As arguments of their own the parts are known not to overlap what the task changes.
-fn run<const W: usize>(
+#[inline(always)]
+fn run_task<const W: usize, const L: usize>(
     setup: &Setup,
     lattice: &Lattice,
     nodes: &Nodes,
@@ -131,9 +148,14 @@ fn run<const W: usize>(
     let mut wanted = Wanted::by(settings.transfer, settings.kernel);
     wanted.before |= !task.motion.is_empty();
     let mut report = Report::default();
-    for (k, point) in task.points.iter_mut().enumerate() {
-        let p = task.first + k;
-        let g = from.gather::<W>(&mut walker, p, point, wanted);
+    let mut batch = Batch::<L>::NONE;
+    for k in 0..task.points.len() {
+        if k % BATCH == 0 {
+            let points = &task.points[k..task.points.len().min(k + BATCH)];
+            batch.fill::<W>(&from, &mut walker, points, wanted);
+        }
+        let (p, point) = (task.first + k, &mut task.points[k]);
+        let g = batch.gathered::<W>(k % BATCH, &from, p, point, wanted);
         if let Some(motion) = task.motion.get_mut(k) {
             *motion = g.motion(time_step);
         }
@@ -177,7 +199,7 @@ fn run<const W: usize>(
 
 /// Why a particle with this volume ratio [–] that moves by this distance squared [m²] through cells of size `h` [m]
 /// cannot go on.
-#[inline]
+#[inline(always)]
 fn cause_of_failure(ratio: f64, way_squared: f64, h: f64) -> Option<Cause> {
     if ratio > 0.0 && way_squared < h * h {
         return None;
