@@ -141,7 +141,7 @@ pub(crate) struct SceneArguments {
     #[arg(long, value_name = "NAME")]
     pub(crate) material: Option<String>,
     /// Of a drawing: metres that its width spans [default: as its units say].
-    #[arg(long, value_name = "METRES", value_parser = parse_length)]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = parse_length)]
     pub(crate) width: Option<f64>,
     /// Override one key of the scene file; may be repeated. The value is TOML; a bare word is a string.
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -208,7 +208,7 @@ pub(crate) struct MeshArguments {
     #[arg(long, value_name = "PART,..", value_delimiter = ',', value_parser = words::<Part>(&["cracked", "body", "faces", "collider", "particles"]), hide_possible_values = true)]
     pub(crate) parts: Vec<Part>,
     /// Thickness of the solids in metres [default: as in the scene].
-    #[arg(long, value_name = "METRES", value_parser = parse_length)]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = parse_length)]
     pub(crate) thickness: Option<f64>,
     /// Up axis of PLY files, y or z; glTF is always y up [default: as in the scene].
     #[arg(long, value_name = "AXIS", value_parser = words::<UpAxis>(&["y", "z"]), hide_possible_values = true)]
@@ -225,7 +225,7 @@ pub(crate) struct CheckArguments {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,
     /// Thickness of the solids in metres [default: as in the scene; of a drawing a tenth of their size].
-    #[arg(long, value_name = "METRES", value_parser = parse_length)]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = parse_length)]
     pub(crate) thickness: Option<f64>,
 }
 
@@ -252,7 +252,7 @@ pub(crate) struct SimArguments {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,
     /// Thickness of the solids in metres [default: as in the scene; of a drawing a tenth of their size].
-    #[arg(long, value_name = "METRES", value_parser = parse_length)]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = parse_length)]
     pub(crate) thickness: Option<f64>,
     #[command(flatten)]
     pub(crate) take: TakeArguments,
@@ -388,7 +388,7 @@ pub(crate) struct VerifyArguments {
     #[arg(long)]
     pub(crate) list: bool,
     /// Run all cases.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "name")]
     pub(crate) all: bool,
     /// Resolution: cells per characteristic length, which `--list` names for each case [default: that of the
     /// targets, at several places what `--list` names].
@@ -400,7 +400,7 @@ pub(crate) struct VerifyArguments {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u16).range(1..))]
     pub(crate) places: u16,
     /// Which places these are.
-    #[arg(long, value_name = "S", default_value_t = 1)]
+    #[arg(long, value_name = "S", default_value_t = 1, allow_negative_numbers = true)]
     pub(crate) seed: u64,
     /// Print Markdown.
     #[arg(long)]

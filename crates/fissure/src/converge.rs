@@ -8,14 +8,12 @@ use crate::interrupt::Interrupt;
 use crate::progress::duration;
 use crate::report::{self, Report};
 use crate::richardson::{Trend, trend};
-use crate::{convergence_plot, scene_file, threads};
-use fissure_files::Folder;
+use crate::{convergence_files, convergence_plot, scene_file, threads};
 use fissure_plane::Point;
 use fissure_scene::{Crack, End, Frame, Scene, TipRecord};
 use fissure_sim::Simulation;
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
-use std::path::Path;
 use std::time::Instant;
 
 /// A number that a run gave; runs are compared by its name.
@@ -40,6 +38,7 @@ struct Outcome {
 
 /// Runs a scene with cells r², r and once as large as it asks for, and prints what changes.
 pub(crate) fn converge(arguments: &ConvergeArguments, interrupt: &Interrupt, report: &Report) -> Result<Exit, Failure> {
+    convergence_files::check(arguments)?;
     threads::set(arguments.threads)?;
     let wanted = Wanted { thickness: None, written: false, output: None };
     let file = scene_file::read(&arguments.scene, &wanted, report)?;
@@ -69,28 +68,17 @@ pub(crate) fn converge(arguments: &ConvergeArguments, interrupt: &Interrupt, rep
     let rows = rows([coarse, middle, fine], ratio);
     report::print(&text([coarse, middle, fine], &rows))?;
     if let Some(path) = &arguments.csv {
-        write(path, &csv([coarse, middle, fine], &rows), report)?;
+        convergence_files::write(path, &csv([coarse, middle, fine], &rows), report)?;
     }
     if let Some(path) = &arguments.svg {
         let cells = [coarse, middle, fine].map(|outcome| outcome.cell_size);
         let quantities: Vec<_> = rows.iter().map(|row| (row.name.as_str(), row.values, row.trend)).collect();
         match convergence_plot::figure(cells, &quantities) {
-            Some(figure) => write(path, &figure.to_svg(), report)?,
+            Some(figure) => convergence_files::write(path, &figure.to_svg(), report)?,
             None => report.warn(&format!("nothing converges, so that `{}` is not written", path.display())),
         }
     }
     Ok(Exit::Done)
-}
-
-/// Writes a file whose folder may be missing.
-fn write(path: &Path, text: &str, report: &Report) -> Result<(), Failure> {
-    let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
-    let folder = Folder::new(parent.unwrap_or_else(|| Path::new(".")));
-    folder.make()?;
-    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-    folder.write(name, text.as_bytes())?;
-    report.note(&format!("wrote `{}`", path.display()));
-    Ok(())
 }
 
 /// Runs a scene to its end; none: the user has asked to stop.
@@ -274,7 +262,7 @@ fn text(outcomes: [&Outcome; 3], rows: &[Row]) -> String {
 }
 
 fn csv(outcomes: [&Outcome; 3], rows: &[Row]) -> String {
-    let mut out = String::from("quantity,unit,coarse,middle,fine,trend,order,extrapolated,uncertainty\n");
+    let mut out = format!("{}\n", convergence_files::COLUMNS);
     let [coarse, middle, fine] = outcomes;
     let _ = writeln!(out, "particle spacing,m,{:e},{:e},{:e},,,,", coarse.spacing, middle.spacing, fine.spacing);
     for row in rows {

@@ -1,5 +1,6 @@
 //! How quantities of a scene converge, as a figure: their distance from what they come to over the size of cells.
 
+use crate::convergence_files::TITLE;
 use crate::richardson::Trend;
 use fissure_chart::{Axis, Figure, Line, Panel, Plot};
 
@@ -28,7 +29,7 @@ pub(crate) fn figure(cells: [f64; 3], quantities: &[Quantity<'_>]) -> Option<Fig
     }
     let (x, y) = (Axis::logarithmic("size of cells [m]"), Axis::logarithmic("from what it comes to").in_percent());
     Some(Figure {
-        title: "What changes with the size of cells".into(),
+        title: TITLE.into(),
         caption: vec![
             "Distance of each quantity from its value without cells, extrapolated by the order that three resolutions have \
              (Roache 1994). What goes up and down, or does not settle, is in the table only."

@@ -6,6 +6,7 @@ mod chart;
 mod check;
 mod completions;
 mod converge;
+mod convergence_files;
 mod convergence_plot;
 mod dial;
 mod drawn;

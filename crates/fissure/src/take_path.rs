@@ -9,8 +9,15 @@ use std::path::{Path, PathBuf};
 /// The take meant by `path`: itself, or the one in a folder of meshes.
 ///
 /// # Errors
-/// When the folder holds several.
+/// When it is a file, or the folder holds several.
 pub(crate) fn take_in(path: &Path) -> Result<PathBuf, Failure> {
+    if path.is_file() {
+        return Err(Failure::new(
+            Exit::File,
+            format!("`{}` is a file, and a take is a folder", path.display()),
+            "name the folder that `fissure sim` or `fissure run` wrote, or the take in it",
+        ));
+    }
     let is_take = |path: &Path| path.extension().is_some_and(|extension| extension == "take") && path.is_dir();
     let Ok(entries) = std::fs::read_dir(path) else { return Ok(path.to_owned()) };
     if is_take(path) {

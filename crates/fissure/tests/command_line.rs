@@ -198,6 +198,19 @@ fn converge_holds_three_resolutions_against_each_other() {
     assert_eq!((spacings[0] / spacings[1], spacings[1] / spacings[2]), (2.0, 2.0));
     let told = expect(&run(folder.path(), &["converge", "plate.toml", "--ratio", "1"]), 2);
     assert!(told.contains("the ratio must be 1.2 to 4"), "{told}");
+    // What was written before is written anew; what others wrote is left alone, before anything is computed.
+    std::fs::write(folder.path().join("drawn.svg"), "<svg/>").unwrap();
+    for (files, words) in [
+        (["--csv", "plate.toml", "--quiet"].as_slice(), "would write over a file that"),
+        (&["--csv", "tables/c.csv", "--svg", "drawn.svg"], "would write over a file that"),
+        (&["--svg", "tables"], "would write over a folder"),
+        (&["--svg", "a", "--csv", "a"], "are one file, `a`"),
+    ] {
+        let told = expect(&run(folder.path(), &[&["converge", "plate.toml"], files].concat()), 2);
+        assert!(told.contains(words), "{told}");
+    }
+    let drawn = std::fs::read_to_string(folder.path().join("drawn.svg")).unwrap();
+    assert_eq!(drawn, "<svg/>");
 }
 
 #[test]

@@ -36,6 +36,6 @@ fn missing(folder: &Path, why: &str) -> Failure {
     Failure::new(
         Exit::File,
         format!("no examples in `{}`: {why}", folder.display()),
-        "say where they are with --examples, or name a chart that needs none: accuracy, speed",
+        "say where they are with --examples, or name a chart that needs none: accuracy, stability, speed, features, dial",
     )
 }

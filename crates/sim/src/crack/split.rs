@@ -245,4 +245,30 @@ mod tests {
             assert!((split.far - Vector::new(0.0, -2.0 / 3.0)).norm() < 1e-15);
         }
     }
+
+    /// Truth: the drawing. A crack makes an S of three arms around the particle, which is in the highest; the middle of
+    /// the S is in the arm below, on the same side of the crack, but the way there leads through the crack twice.
+    #[test]
+    fn a_part_whose_middle_is_out_of_sight_is_not_taken() {
+        let around = [
+            (-1.5, 0.15),
+            (0.9, 0.15),
+            (0.9, -0.55),
+            (-0.6, -0.55),
+            (-0.6, -0.65),
+            (1.5, -0.65),
+            (1.5, -0.95),
+            (-0.9, -0.95),
+            (-0.9, -0.25),
+            (0.6, -0.25),
+            (0.6, -0.15),
+            (-1.5, -0.15),
+        ]
+        .map(|(x, y)| Point::new(x, y));
+        let center = Point::origin();
+        let segments: Vec<_> =
+            around.windows(2).map(|w| (w[0], w[1])).filter(|&segment| runs_through(center, 1.0, segment)).collect();
+        assert_eq!(is_left_of(&segments, center), is_left_of(&segments, Point::new(0.0, -0.4)));
+        assert_eq!(Split::of_square(center, 1.0, &segments), None);
+    }
 }
