@@ -107,8 +107,9 @@ impl Lattice {
                 continue;
             }
             let strains = self.reader().strains(p, &motion.displacement);
-            let kept = self.kept_strains(p, &of_particle, strains);
-            self.note_changes(p, &of_particle, &mut changes);
+            let swaps = self.has_changed_sides(p, &of_particle);
+            let kept = self.kept_strains(p, &of_particle, swaps, strains);
+            self.note_changes(p, &of_particle, swaps, &mut changes);
             changed.push(p);
             parts.push((p, of_particle, kept));
         }
@@ -139,9 +140,16 @@ impl Lattice {
 
     /// The strains of both parts of a particle after it has been cut anew, from those before: material keeps its
     /// strain, and what goes from one part to the other takes it along, so that forces stay what they are.
-    pub(super) fn kept_strains(&self, particle: usize, new: &Parts, [mut own, mut far]: [Matrix; 2]) -> [Matrix; 2] {
+    /// `swaps`: whether its parts [have changed sides](Self::has_changed_sides).
+    pub(super) fn kept_strains(
+        &self,
+        particle: usize,
+        new: &Parts,
+        swaps: bool,
+        [mut own, mut far]: [Matrix; 2],
+    ) -> [Matrix; 2] {
         let mut before = self.layout.cut.part_of(particle).map_or(1.0, |part| part.0);
-        if self.has_changed_sides(particle, new) {
+        if swaps {
             std::mem::swap(&mut own, &mut far);
             before = 1.0 - before;
         }
@@ -173,7 +181,7 @@ impl Lattice {
 
     /// Whether what lies across a crack from a particle is now what was on its side before, as when the crack turns and
     /// passes it.
-    fn has_changed_sides(&self, particle: usize, new: &Parts) -> bool {
+    pub(super) fn has_changed_sides(&self, particle: usize, new: &Parts) -> bool {
         let Layout { cut, far, .. } = &self.layout;
         let is_split = cut.part_of(particle).is_some_and(|part| part.0 < 1.0) && !new.far.is_empty();
         let (Some(own), Some(far), true) = (cut.entries_of(particle), far.entries_of(particle), is_split) else {
@@ -184,8 +192,8 @@ impl Lattice {
     }
 
     /// Notes how the weights of a particle move between its fields: part by part, and what lies across a crack now and
-    /// did not before.
-    pub(super) fn note_changes(&self, particle: usize, new: &Parts, changes: &mut Vec<WeightChange>) {
+    /// did not before. `swaps`: whether its parts [have changed sides](Self::has_changed_sides).
+    pub(super) fn note_changes(&self, particle: usize, new: &Parts, swaps: bool, changes: &mut Vec<WeightChange>) {
         let (mut own, mut far) = (Vec::with_capacity(16), Vec::new());
         let mut reader = self.reader();
         reader.for_each_entry(particle, |field, w, _| own.push((field as u32, w)));
@@ -193,7 +201,7 @@ impl Lattice {
         if before < 1.0 {
             far.extend(self.layout.far.entries_of(particle).into_iter().flatten().map(|e| (e.field, e.weight)));
         }
-        if self.has_changed_sides(particle, new) {
+        if swaps {
             std::mem::swap(&mut own, &mut far);
             before = 1.0 - before;
         }

@@ -158,12 +158,13 @@ impl Lattice {
         let mut parts = Vec::with_capacity(moved.len());
         for (k, (&p, strain)) in moved.iter().zip(&strains).enumerate() {
             let of_particle = self.make_parts(p);
+            let swaps = self.has_changed_sides(p, &of_particle);
             if k < hosts.len() {
                 changes.push(self.whole_change(p, &of_particle.own));
             } else {
-                self.note_changes(p, &of_particle, &mut changes);
+                self.note_changes(p, &of_particle, swaps, &mut changes);
             }
-            let kept = self.kept_strains(p, &of_particle, *strain);
+            let kept = self.kept_strains(p, &of_particle, swaps, *strain);
             parts.push((p, of_particle, kept));
         }
         let lost = self.move_weights(&changes, false, motion);
