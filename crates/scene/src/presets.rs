@@ -30,7 +30,7 @@ pub fn solver_preset(preset: SolverPreset) -> (SolverSettings, GrowthSettings) {
                 enabled: true,
                 increment: 0.125,
                 bending: 1.0,
-                speed_limit: 0.95,
+                speed_limit: 0.99,
                 speed_curve: Curve::default(),
                 branching: None,
             },

@@ -42,6 +42,12 @@ pub(crate) struct Tip {
     /// Energy that the tip has taken out of the body beyond the cost of its growth [J/m], never negative. It pays for
     /// growth to come.
     pub(crate) balance: f64,
+    /// The most of it that the tip needs from one step to the next [J/m].
+    pub(crate) most_balance: f64,
+    /// Whether nothing but waves limits its speed.
+    pub(crate) is_free: bool,
+    /// Whether what lies ahead is too near for an integral: see [`Advance`](crate::growth::Advance).
+    pub(crate) is_in_last_ligament: bool,
     /// Speed [m/s] and J [J/m²], averaged over the last moments while it runs.
     pub(crate) pace: Pace,
     /// Direction of growth asked for by the stress, averaged over the last moments; at rest, not normalised. Zero:
@@ -63,9 +69,29 @@ impl Tip {
             run_at_frame: 0.0,
             assessment: Assessment::default(),
             balance: 0.0,
+            most_balance: 0.0,
+            is_free: true,
+            is_in_last_ligament: false,
             pace: Pace::default(),
             heading: Vector::zeros(),
         }
+    }
+
+    /// Whether its guide says when it grows.
+    pub(crate) fn has_schedule(&self) -> bool {
+        self.guide.as_ref().is_some_and(|guide| guide.due(0.0, 0.0).is_some())
+    }
+
+    /// The part of the drag of its ties that acts: less the more the tip already has for its way. A tip that runs as
+    /// fast as waves and has more than it needs drives the faces apart with it, so that nothing is taken that pays for
+    /// nothing; what a lower limit holds back is lost to it. Around a tip that does not grow there is no drag: its body
+    /// keeps its energy.
+    pub(crate) fn part_of_drag(&self) -> f64 {
+        if self.state != TipState::Growing {
+            return 0.0;
+        }
+        let is_driven = self.is_free && self.most_balance > 0.0;
+        if is_driven { (1.0 - self.balance / self.most_balance).max(-1.0) } else { 1.0 }
     }
 
     /// Crack length this tip has added so far without what it is ahead of its speed limit [m]: a leap, over the last
@@ -95,6 +121,7 @@ impl Tip {
         self.state = TipState::Growing;
         self.since_division = 0.0;
         self.balance *= 0.5;
+        self.is_in_last_ligament = false;
         self.pace = Pace { run: self.run(), ..Pace::default() };
         // Each branch goes its own way from here.
         self.guide = None;
@@ -113,7 +140,14 @@ impl Tip {
         let what = "a tip";
         saved::finite(
             what,
-            [&self.ahead_of_limit, &self.grown, &self.run_at_frame, &self.time_at_rest, &self.balance],
+            [
+                &self.ahead_of_limit,
+                &self.grown,
+                &self.run_at_frame,
+                &self.time_at_rest,
+                &self.balance,
+                &self.most_balance,
+            ],
         )?;
         saved::finite(what, [&m.j_integral, &m.mode_1, &m.mode_2, &m.kink_angle, &m.equivalent, &m.released])?;
         saved::finite(what, [&m.fracture_toughness, &m.contour_radius])?;

@@ -2,7 +2,8 @@
 
 use fissure_scene::{CrackEnd, Point, TipState};
 
-/// A ligament of less than this many cells breaks at once: no integral can be taken in it.
+/// In a ligament of less than this many cells no integral can be taken. A tip that runs goes straight on through it, on
+/// its account alone; from rest, or where tips only jump, it breaks at once.
 pub(super) const LAST_LIGAMENT: f64 = 1.5;
 
 /// What one tip does.
@@ -14,4 +15,6 @@ pub(crate) struct Advance {
     pub(crate) end: CrackEnd,
     /// State of the tip afterwards.
     pub(crate) state: TipState,
+    /// Whether the tip is in its last ligament afterwards.
+    pub(crate) is_in_last_ligament: bool,
 }

@@ -28,7 +28,18 @@ impl Barrier {
             CrackEnd::Junction { .. } => TipState::MetCrack,
             _ => TipState::LeftBody,
         };
-        Advance { points, end: self.end, state }
+        Advance { points, end: self.end, state, is_in_last_ligament: true }
+    }
+
+    /// The next advance by `step` of a tip at `from` that runs on to the barrier.
+    pub(super) fn approach(self, from: Point, step: f64) -> Advance {
+        let way = self.at - from;
+        let distance = way.norm();
+        if distance <= step {
+            return self.finish(Vec::new(), from);
+        }
+        let points = vec![from + way * (step / distance)];
+        Advance { points, end: CrackEnd::Tip, state: TipState::Growing, is_in_last_ligament: true }
     }
 }
 

@@ -36,6 +36,9 @@ pub(crate) fn heading(
     if tip.heading == Vector::zeros() {
         return now;
     }
+    if tip.is_in_last_ligament {
+        return cracks.last_direction(id);
+    }
     if let Some(direction) = after_kink(cracks, id, DIRECTION_LENGTH * scene.cell_size, tip.grown) {
         return direction;
     }

@@ -2,23 +2,24 @@
 //! near.
 
 use super::advance::{Advance, LAST_LIGAMENT};
-use super::barrier::{beside, first_barrier};
+use super::barrier::{Barrier, beside, first_barrier};
 use super::heading::way;
 use crate::crack::assessment::Assessment;
 use crate::crack::cracks::{Cracks, TipId};
-use fissure_scene::{CrackEnd, Scene, TipState, Vector};
+use fissure_scene::{CrackEnd, Point, Scene, TipState, Vector};
 
 /// A turn by less than this [rad] is rounding. A crack that rounding turned off an axis of symmetry would pass
 /// nodes and particles on it on sides that rounding chooses, and nothing would be symmetric from there on.
 const NO_TURN: f64 = 1e-9;
 
-/// The next increment of a tip that wants to grow.
+/// The next increment of a tip that wants to grow. `runs`: it is on its way, and needs no integral to go on.
 pub(crate) fn next_increment(
     cracks: &Cracks,
     id: TipId,
     assessed: &Assessment,
     scene: &Scene,
     time: f64,
+    runs: bool,
 ) -> Option<Advance> {
     let tip = cracks.tip(id)?;
     let h = scene.cell_size;
@@ -37,27 +38,37 @@ pub(crate) fn next_increment(
         let (mut last, mut next) = (from, target);
         for _ in 0..=pieces {
             if let Some(hit) = first_barrier(cracks, id, region, last, next.at) {
+                if runs && !points.is_empty() {
+                    return Some(Advance { is_in_last_ligament: true, ..open(vec![target.at], TipState::Growing) });
+                }
                 return Some(hit.finish(points, from));
             }
             points.push(next.at);
             (last, next) = (next.at, guide.after(next, step));
         }
         if (target.at - from).norm() <= 1e-9 * h {
-            return Some(Advance { points: Vec::new(), end: CrackEnd::Tip, state: TipState::GuideEnded });
+            return Some(open(Vec::new(), TipState::GuideEnded));
         }
         let state = if target.is_end { TipState::GuideEnded } else { TipState::Growing };
-        return Some(Advance { points: vec![target.at], end: CrackEnd::Tip, state });
+        return Some(open(vec![target.at], state));
     }
-    let toward = straight_on(way(cracks, id, assessed, scene), cracks.last_direction(id));
+    let last = cracks.last_direction(id);
+    let toward = if tip.is_in_last_ligament { last } else { straight_on(way(cracks, id, assessed, scene), last) };
+    let through = |hit: Barrier| if runs { hit.approach(from, step) } else { hit.finish(Vec::new(), from) };
     if let Some(hit) = first_barrier(cracks, id, region, from, from + toward * (step + LAST_LIGAMENT * h)) {
-        return Some(hit.finish(Vec::new(), from));
+        return Some(through(hit));
     }
     if let Some(near) = beside(cracks, id, toward, h)
         && let Some(hit) = first_barrier(cracks, id, region, from, near + (near - from) * 0.01)
     {
-        return Some(hit.finish(Vec::new(), from));
+        return Some(through(hit));
     }
-    Some(Advance { points: vec![from + toward * step], end: CrackEnd::Tip, state: TipState::Growing })
+    Some(open(vec![from + toward * step], TipState::Growing))
+}
+
+/// An advance of a tip that has nothing in its way.
+fn open(points: Vec<Point>, state: TipState) -> Advance {
+    Advance { points, end: CrackEnd::Tip, state, is_in_last_ligament: false }
 }
 
 /// The direction `toward`, or that of the crack where they differ by rounding.

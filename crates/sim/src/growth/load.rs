@@ -97,9 +97,13 @@ pub(crate) fn cost(
     if let Some(due) = tip.and_then(|t| t.guide.as_ref()?.due(t.grown, time)) {
         return Cost::Scheduled(due.length);
     }
+    let critical = critical_release(cracks, id, assessed, scene, elastic);
+    if tip.is_some_and(|t| t.is_in_last_ligament) {
+        return Cost::Energy(critical);
+    }
     let part = assessed.fracture_toughness / equivalent(cracks, id, assessed, scene);
     // The larger of a NaN and a number is the number.
-    Cost::Energy((assessed.released * part * part).max(critical_release(cracks, id, assessed, scene, elastic)))
+    Cost::Energy((assessed.released * part * part).max(critical))
 }
 
 /// G_c = K_c²/E' of what lies ahead of a tip [J/m²].

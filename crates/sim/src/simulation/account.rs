@@ -6,10 +6,18 @@ use crate::crack::cracks::TipId;
 use crate::growth::{self, Cost};
 use fissure_scene::TipState;
 
-/// The most energy that a tip may carry over to the next step, as the length that it pays for, in cells. What the
+/// The most energy that a tip needs from one step to the next, as the length that it pays for, in cells. What the
 /// lattice releases per length varies within a cell: in one part of it a tip takes a little too much, in the next too
-/// little.
+/// little. What it has beyond this it gives back, or it is lost to what limits its speed.
 const BALANCE_CELLS: f64 = 0.5;
+
+/// The most that a tip carries over that gives back what it has too much, over what it needs: there drag gives as much
+/// as it takes otherwise.
+const MOST_CARRIED: f64 = 2.0;
+
+/// A speed limit of at least this part of the Rayleigh wave speed is that of waves. A lower one is the scene's or the
+/// material's: of a real crack that runs no faster, more is used up at the tip.
+const FREE: f64 = 0.9;
 
 /// A tip stays where it is rather than move by less than this, in cells.
 const LEAST_SLIDE: f64 = 1e-12;
@@ -19,14 +27,18 @@ const HALVINGS: u32 = 54;
 
 impl Simulation {
     /// Settles the account of a tip after a step: what is carried over is bounded, and what drag has taken comes to it.
-    /// A tip that does not grow has none.
-    pub(super) fn settle_account(&mut self, id: TipId, assessed: &Assessment) {
+    /// A tip that does not grow has none. `limit`: its highest speed [m/s].
+    pub(super) fn settle_account(&mut self, id: TipId, assessed: &Assessment, limit: f64) {
         let Some(sliding) = self.solver.sliding_mut() else { return };
         let dragged = sliding.take_drag(id);
         self.state.crack_energy += dragged;
         let cost = growth::critical_release(&self.state.cracks, id, assessed, &self.scene, &self.elastic);
+        let fastest = self.elastic[self.material_at(id)].rayleigh_wave_speed();
         let Some(tip) = self.state.cracks.tip_mut(id) else { return };
-        let kept = tip.balance.min(BALANCE_CELLS * self.scene.cell_size * cost);
+        tip.is_free = limit >= FREE * fastest && !tip.has_schedule();
+        tip.most_balance = BALANCE_CELLS * self.scene.cell_size * cost;
+        let carried = if tip.is_free { MOST_CARRIED } else { 1.0 };
+        let kept = tip.balance.min(carried * tip.most_balance);
         tip.balance = if tip.state == TipState::Growing { kept + dragged } else { 0.0 };
     }
 

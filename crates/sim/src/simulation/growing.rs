@@ -103,8 +103,7 @@ impl Simulation {
             if let Some(tip) = state.cracks.tip_mut(id) {
                 tip.assessment = *m;
                 let is_far = m.equivalent < FAR_FROM_GROWTH * m.fracture_toughness;
-                let has_schedule = tip.guide.as_ref().is_some_and(|g| g.due(0.0, 0.0).is_some());
-                if tip.state != TipState::Growing && is_far && !has_schedule {
+                if tip.state != TipState::Growing && is_far && !tip.has_schedule() {
                     tip.steps_to_look = STEPS_BETWEEN_LOOKS - 1;
                 }
             }
@@ -119,8 +118,9 @@ impl Simulation {
 
     /// A tip after a step that ends at `time`, ready to grow: what it may run is counted, and its account is settled.
     fn ready(&mut self, id: TipId, assessed: Assessment, time: f64, time_step: f64) -> Runner {
-        self.settle_account(id, &assessed);
-        let may_run = growth::speed_limit(&self.state.cracks, id, &self.scene, &self.elastic, time) * time_step;
+        let limit = growth::speed_limit(&self.state.cracks, id, &self.scene, &self.elastic, time);
+        self.settle_account(id, &assessed, limit);
+        let may_run = limit * time_step;
         let window = PACE_CELLS * self.crossing_time(id);
         if let Some(tip) = self.state.cracks.tip_mut(id) {
             tip.keep_pace(assessed.j_integral, time_step, window);
@@ -190,7 +190,9 @@ impl Simulation {
             return Decision::Wait;
         }
         let slides = self.solver.sliding().is_some();
-        if !tip.runs && !growth::wants_to_grow(cracks, tip.id, assessed, scene, time, slides) {
+        // What is too near for an integral breaks once a tip that ran to it stands still.
+        let goes_on = tip.runs || (of.is_in_last_ligament && of.state == TipState::Growing);
+        if !goes_on && !growth::wants_to_grow(cracks, tip.id, assessed, scene, time, slides) {
             return Decision::Rest;
         }
         if cracks.left_of_increment(tip.id).is_some() {
@@ -199,7 +201,7 @@ impl Simulation {
         if let Some(branches) = growth::branches(cracks, tip.id, assessed, scene, &self.elastic) {
             return Decision::Divide(branches);
         }
-        growth::next_increment(cracks, tip.id, assessed, scene, time).map_or(Decision::Wait, Decision::Begin)
+        growth::next_increment(cracks, tip.id, assessed, scene, time, tip.runs).map_or(Decision::Wait, Decision::Begin)
     }
 
     /// Does what a tip has decided; `changed` are the tips that are to be cut before any slides, those that others have
@@ -225,7 +227,7 @@ impl Simulation {
                     (self.state.cracks.position(other) - from).norm() < IN_EACH_OTHERS_WAY * self.scene.cell_size
                 };
                 let advance = if changed.iter().any(is_near) {
-                    growth::next_increment(&self.state.cracks, id, &tip.assessed, &self.scene, time)
+                    growth::next_increment(&self.state.cracks, id, &tip.assessed, &self.scene, time, tip.runs)
                 } else {
                     Some(advance)
                 };
@@ -246,18 +248,21 @@ impl Simulation {
     fn runs(&self, id: TipId) -> bool {
         let cracks = &self.state.cracks;
         let Some(tip) = cracks.tip(id) else { return false };
-        let has_schedule = tip.guide.as_ref().is_some_and(|g| g.due(0.0, 0.0).is_some());
         tip.state == TipState::Growing
             && self.solver.sliding().is_some()
-            && !has_schedule
+            && !tip.has_schedule()
             && tip.time_at_rest < STANDS_STILL * self.crossing_time(id)
     }
 
     /// Time a wave takes for a cell at a tip [s].
     fn crossing_time(&self, id: TipId) -> f64 {
+        self.scene.cell_size / self.elastic[self.material_at(id)].dilatational_wave_speed()
+    }
+
+    /// The material at a tip.
+    pub(super) fn material_at(&self, id: TipId) -> usize {
         let cracks = &self.state.cracks;
-        let material = self.scene.bodies[cracks.of(id).body as usize].material_at(cracks.position(id));
-        self.scene.cell_size / self.elastic[material].dilatational_wave_speed()
+        self.scene.bodies[cracks.of(id).body as usize].material_at(cracks.position(id))
     }
 
     /// Sets a tip on its way through an increment, or at its end where tips only jump or the increment is not like
@@ -280,6 +285,7 @@ impl Simulation {
         let cracks = &mut self.state.cracks;
         if let Some(tip) = cracks.tip_mut(id) {
             tip.state = advance.state;
+            tip.is_in_last_ligament = advance.is_in_last_ligament;
         }
         cracks.set_end(id, advance.end);
     }

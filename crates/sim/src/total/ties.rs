@@ -7,10 +7,11 @@ use super::near::Near;
 use super::tie::{self, Tie, TieUnits};
 use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::division::WINDOW;
+use crate::crack::tip::Tip;
 use crate::saved::{self, Fits};
 use crate::solver::Release;
 use fissure_plane::{Point, Vector};
-use fissure_scene::{CrackEnd, TipState};
+use fissure_scene::CrackEnd;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -226,15 +227,18 @@ impl Ties {
         }
     }
 
-    /// Lets the drag of the ties around growing tips act within a kick of `kick` [s]. Around a crack at rest there is
-    /// none: its body keeps its energy.
+    /// Lets the drag of the ties around growing tips act within a kick of `kick` [s], as far as each tip needs what
+    /// it takes.
     pub(super) fn apply_drag(&mut self, mass: &[f64], motion: &mut Motion, cracks: &Cracks, kick: f64) {
-        let is_growing = |id: TipId| cracks.tip(id).is_some_and(|tip| tip.state == TipState::Growing);
-        let growing = self.of_tip.iter_mut().filter(|(id, _)| is_growing(**id));
+        let part = |id: TipId| cracks.tip(id).map_or(0.0, Tip::part_of_drag);
+        let growing = self.of_tip.iter_mut().map(|(id, ties)| (part(*id), ties)).filter(|(part, _)| *part != 0.0);
         // All see the velocities without drag: where the ties of two tips share a field, neither comes before the
         // other.
-        let of = |tie: &mut Tie| tie.drag(mass, motion, kick).map(|impulse| ([tie.first, tie.second], impulse));
-        let impulses: Vec<([u32; 2], Vector)> = growing.flat_map(|(_, ties)| ties).filter_map(of).collect();
+        let of = |part: f64, tie: &mut Tie| {
+            tie.drag(part, mass, motion, kick).map(|impulse| ([tie.first, tie.second], impulse))
+        };
+        let impulses: Vec<([u32; 2], Vector)> =
+            growing.flat_map(|(part, ties)| ties.iter_mut().filter_map(move |tie| of(part, tie))).collect();
         for ([first, second], impulse) in impulses {
             let (a, b) = (first as usize, second as usize);
             for axis in 0..2 {
