@@ -10,6 +10,9 @@ pub(crate) type Complaint = (String, String);
 /// What comes this near to a ring, in tolerances, touches it: more than rounding, less than anybody draws.
 const WELD: f64 = 1e-3;
 
+/// How far mouths that fall together are moved apart, in tolerances: less where something else is as near to the crack.
+const PARTS_OF_TOLERANCE: [f64; 4] = [1.0, 0.1, 0.01, 2.0 * WELD];
+
 /// A crack, or a piece of one, with its ends where they belong.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Seated {
@@ -80,11 +83,20 @@ fn part_mouths(region: &mut Region, before: &mut [Point], after: &mut [Point], t
     // The smaller angle is below half a turn, so that nothing is in the way.
     let slides_on = turn(next, first) <= turn(second, previous);
     let edge = if slides_on { next } else { previous };
-    let mouth = corner + edge * (tolerance / edge.norm()).min(0.25);
-    points.insert(if slides_on { at + 1 } else { at }, mouth);
-    match before.last_mut() {
-        Some(last) if before_is_first == slides_on => *last = mouth,
-        _ => after[0] = mouth,
+    let moves_before = before_is_first == slides_on;
+    let whole = points.clone();
+    for part in PARTS_OF_TOLERANCE {
+        let mouth = corner + edge * (part * tolerance / edge.norm()).min(0.25);
+        let points = if ring == 0 { &mut region.exterior } else { &mut region.holes[ring - 1] };
+        points.clone_from(&whole);
+        points.insert(if slides_on { at + 1 } else { at }, mouth);
+        match before.last_mut() {
+            Some(last) if moves_before => *last = mouth,
+            _ => after[0] = mouth,
+        }
+        if crate::validate::leaves(region, if moves_before { before } else { after }).is_none() {
+            return;
+        }
     }
 }
 
@@ -226,6 +238,17 @@ mod tests {
                 .0
                 .contains("ends at the tip")
         );
+    }
+
+    /// Truth: what a crack must be. A line that turns back in a corner of the outline passes a hole by a tenth of what
+    /// its mouths are parted by.
+    #[test]
+    fn mouths_are_parted_beside_holes() {
+        let mut region = split::region(0.0, false);
+        let line = points(&[(4.5338866253006955, -1.2705009125372981), (-4.0, 3.0), (0.0, -0.5)]);
+        let pieces = seat_crack(&line, &mut region, split::SHORTEST);
+        assert!(pieces.iter().all(|piece| crate::validate::leaves(&region, &piece.points).is_none()), "{pieces:?}");
+        assert!(pieces.windows(2).all(|pair| pair[0].points.last() != pair[1].points.first()), "{pieces:?}");
     }
 
     /// Truth: the construction. The bar of a T, drawn a little short of the trunk and a little beyond it, ends on a
