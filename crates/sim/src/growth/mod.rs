@@ -4,7 +4,8 @@
 //! with J. In the total formulation it then slides through its increment as far as the energy it releases pays for, so
 //! that its speed follows from the energy balance; in the updated formulation it jumps by whole increments. A limit
 //! keeps it below a fraction of c_R. Direction: maximum hoop stress, a guide, or a blend of both; a guide with a
-//! schedule also says when. Close to a ring or another crack the tip goes the rest of the way at once and ends exactly
+//! schedule also says when. Close to a ring or another crack nothing can be measured: a tip that slides goes straight
+//! on through the last ligament and pays for it, one that jumps or comes from rest breaks it at once. Both end exactly
 //! there.
 
 mod advance;
