@@ -8,12 +8,10 @@ mod region;
 mod settings;
 mod toughness;
 
-#[cfg(all(test, feature = "load"))]
-pub(crate) use cracks::leaves;
 // What is checked while it is read, where the file still says what was meant.
 #[cfg(feature = "load")]
 pub(crate) use {
-    cracks::{MOST_GENERATIONS, no_tip, validate_strength},
+    cracks::{MOST_GENERATIONS, leaves, no_tip, validate_strength},
     curve::{Clock, validate_curve, validate_factor, validate_schedule, validate_speed},
     region::{overlap, validate_region},
     toughness::{outside, validate_corners},

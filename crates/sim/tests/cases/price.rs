@@ -40,9 +40,8 @@ fn a_running_crack_takes_what_its_length_costs() {
             let is_near = |energy: f64, bound: f64| (energy / price - 1.0).abs() < bound;
             let taken = simulation.energies().crack;
             let lost = first - simulation.energy_held();
-            // The last ligament, here two per cent of the way, breaks at once: what it sets free goes into waves.
-            let bound = if simulation.tips()[0].state.is_live() { 0.015 } else { 0.035 };
-            assert!(is_near(taken, bound) && is_near(lost, bound), "{courant}: {taken} and {lost} instead of {price}");
+            let is_paid = is_near(taken, 0.015) && is_near(lost, 0.015);
+            assert!(is_paid, "{courant}: {taken} and {lost} instead of {price}");
         }
         assert_eq!(simulation.tips()[0].state, TipState::LeftBody);
     }
