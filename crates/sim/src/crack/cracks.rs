@@ -273,10 +273,12 @@ impl Cracks {
         self.0[id.crack].set_end(id.end, end);
     }
 
-    /// Adds points at the end, for which lines will be cut. Returns the length that they add [m].
+    /// Adds points at the end, for which lines will be cut; an increment that it is on its way through ends where it
+    /// is. Returns the length that they add [m].
     pub(crate) fn grow(&mut self, id: TipId, points: &[Point]) -> f64 {
         let crack = &mut self.0[id.crack];
         let before = crack.length();
+        crack.ways[slot(id.end)].target = None;
         for &point in points {
             crack.push(id.end, point);
         }

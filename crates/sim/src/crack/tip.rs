@@ -48,6 +48,8 @@ pub(crate) struct Tip {
     pub(crate) is_free: bool,
     /// Whether what lies ahead is too near for an integral: see [`Advance`](crate::growth::Advance).
     pub(crate) is_in_last_ligament: bool,
+    /// Time for which that has been so [s].
+    pub(crate) time_in_ligament: f64,
     /// Speed [m/s] and J [J/m²], averaged over the last moments while it runs.
     pub(crate) pace: Pace,
     /// Direction of growth asked for by the stress, averaged over the last moments; at rest, not normalised. Zero:
@@ -72,6 +74,7 @@ impl Tip {
             most_balance: 0.0,
             is_free: true,
             is_in_last_ligament: false,
+            time_in_ligament: 0.0,
             pace: Pace::default(),
             heading: Vector::zeros(),
         }
@@ -121,7 +124,7 @@ impl Tip {
         self.state = TipState::Growing;
         self.since_division = 0.0;
         self.balance *= 0.5;
-        self.is_in_last_ligament = false;
+        (self.is_in_last_ligament, self.time_in_ligament) = (false, 0.0);
         self.pace = Pace { run: self.run(), ..Pace::default() };
         // Each branch goes its own way from here.
         self.guide = None;
@@ -147,6 +150,7 @@ impl Tip {
                 &self.time_at_rest,
                 &self.balance,
                 &self.most_balance,
+                &self.time_in_ligament,
             ],
         )?;
         saved::finite(what, [&m.j_integral, &m.mode_1, &m.mode_2, &m.kink_angle, &m.equivalent, &m.released])?;

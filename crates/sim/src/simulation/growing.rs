@@ -27,6 +27,10 @@ const STANDS_STILL: f64 = 8.0;
 /// ... and after so many it is at rest.
 const ARRESTS: f64 = 25.0;
 
+/// A tip that has been in its last ligament for so many of these times, at less than some tenths of c_R, breaks the
+/// rest of it at once.
+const IN_LIGAMENT: f64 = 25.0;
+
 /// A resting tip whose K_eq is below this part of the toughness ...
 const FAR_FROM_GROWTH: f64 = 0.7;
 /// ... is looked at only once in so many steps: with a step of half a cell's wave time or less a wave goes two cells in
@@ -128,6 +132,7 @@ impl Simulation {
             let most_saved = may_run + SAVED_WAY * self.scene.cell_size;
             tip.ahead_of_limit = (tip.ahead_of_limit - may_run).max(-most_saved);
             tip.time_at_rest += time_step;
+            tip.time_in_ligament = if tip.is_in_last_ligament { tip.time_in_ligament + time_step } else { 0.0 };
         }
         Runner { id, assessed, may_run: may_run > 0.0, runs: self.runs(id) }
     }
@@ -190,9 +195,13 @@ impl Simulation {
             return Decision::Wait;
         }
         let slides = self.solver.sliding().is_some();
-        // What is too near for an integral breaks once a tip that ran to it stands still.
-        let goes_on = tip.runs || (of.is_in_last_ligament && of.state == TipState::Growing);
-        if !goes_on && !growth::wants_to_grow(cracks, tip.id, assessed, scene, time, slides) {
+        // What is too near for an integral breaks once a tip that ran to it hardly runs any more.
+        let breaks = of.is_in_last_ligament && of.state == TipState::Growing && !tip.runs;
+        if breaks {
+            return growth::next_increment(cracks, tip.id, assessed, scene, time, false)
+                .map_or(Decision::Wait, Decision::Begin);
+        }
+        if !tip.runs && !growth::wants_to_grow(cracks, tip.id, assessed, scene, time, slides) {
             return Decision::Rest;
         }
         if cracks.left_of_increment(tip.id).is_some() {
@@ -252,6 +261,7 @@ impl Simulation {
             && self.solver.sliding().is_some()
             && !tip.has_schedule()
             && tip.time_at_rest < STANDS_STILL * self.crossing_time(id)
+            && tip.time_in_ligament < IN_LIGAMENT * self.crossing_time(id)
     }
 
     /// Time a wave takes for a cell at a tip [s].

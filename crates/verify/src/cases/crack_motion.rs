@@ -19,7 +19,7 @@ pub(crate) const CASE: Case = Case::new(
     ("over half the height of the plate", 40.0),
     compute,
 )
-.family_cells(20.0);
+.family_cells(40.0);
 
 /// τ/t_c, times after the step's begin [t_c], and how near the run should be then, where there is a target. The shorter
 /// the delay, the faster the crack.
@@ -62,9 +62,9 @@ fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationErr
 }
 
 /// The delays one by one: a crack that starts late, and one that starts early and so runs fast.
-pub(crate) const LATE: Case = Case::new("crack-motion-late", CASE.about, CASE.cells, compute_late).family_cells(20.0);
+pub(crate) const LATE: Case = Case::new("crack-motion-late", CASE.about, CASE.cells, compute_late).family_cells(40.0);
 pub(crate) const EARLY: Case =
-    Case::new("crack-motion-early", CASE.about, CASE.cells, compute_early).family_cells(20.0);
+    Case::new("crack-motion-early", CASE.about, CASE.cells, compute_early).family_cells(40.0);
 
 fn compute_late(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationError> {
     compute_delay(&DELAYS[0], options, tally)
