@@ -252,33 +252,43 @@ impl Particles {
 
     /// The fault of the selection of item `index` of `array`, a load or a support, that meets no particle.
     pub(crate) fn no_particle(&self, array: &str, index: usize, selection: &Selection) -> SceneFault {
-        let path = KeyPath::item(array, index).then("select");
-        let distance = |to: &dyn Fn(Point) -> f64| self.rest.iter().map(|&p| to(p)).fold(f64::INFINITY, f64::min);
-        let (why, remedy) = match selection {
-            Selection::Near { points, radius } => {
-                let off = distance(&|p| points.iter().map(|q| (p - q).norm()).fold(f64::INFINITY, f64::min));
-                let why =
-                    format!("the nearest is {off:.3e} m away from its points, more than its radius of {radius} m");
-                (why, format!("move the points, or make `radius` at least {} m", round_up(1.5 * off)))
-            }
-            Selection::Region(region) => {
-                let off = distance(&|p| region.distance_to_rings(p));
-                (
-                    format!("the nearest is {off:.3e} m away from its region"),
-                    "move the region onto a body, or make it larger".into(),
-                )
-            }
-            Selection::Edge { side, .. } => {
-                let side = format!("{side:?}").to_lowercase();
-                let why = format!("no piece of an outline lies along the {side} side of the bodies' box");
-                (why, "select a `region` or points `near` the place instead".into())
-            }
-            Selection::All | Selection::Bodies(_) | Selection::Outline(_) => {
-                ("there is none in it or along it".into(), "check it against the bodies".into())
-            }
-        };
-        SceneFault::new(path, format!("{array} {} selects no particle: {why}", index + 1), remedy)
+        nothing_selected("particle", &self.rest, array, index, selection)
     }
+}
+
+/// The fault of the selection of item `index` of `array`, which meets none of `places`, where each `what` is.
+pub(crate) fn nothing_selected(
+    what: &str,
+    places: &[Point],
+    array: &str,
+    index: usize,
+    selection: &Selection,
+) -> SceneFault {
+    let path = KeyPath::item(array, index).then("select");
+    let distance = |to: &dyn Fn(Point) -> f64| places.iter().map(|&p| to(p)).fold(f64::INFINITY, f64::min);
+    let (why, remedy) = match selection {
+        Selection::Near { points, radius } => {
+            let off = distance(&|p| points.iter().map(|q| (p - q).norm()).fold(f64::INFINITY, f64::min));
+            let why = format!("the nearest is {off:.3e} m away from its points, more than its radius of {radius} m");
+            (why, format!("move the points, or make `radius` at least {} m", round_up(1.5 * off)))
+        }
+        Selection::Region(region) => {
+            let off = distance(&|p| region.distance_to_rings(p));
+            (
+                format!("the nearest is {off:.3e} m away from its region"),
+                "move the region onto a body, or make it larger".into(),
+            )
+        }
+        Selection::Edge { side, .. } => {
+            let side = format!("{side:?}").to_lowercase();
+            let why = format!("no piece of an outline lies along the {side} side of the bodies' box");
+            (why, "select a `region` or points `near` the place instead".into())
+        }
+        Selection::All | Selection::Bodies(_) | Selection::Outline(_) => {
+            ("there is none in it or along it".into(), "check it against the bodies".into())
+        }
+    };
+    SceneFault::new(path, format!("{array} {} selects no {what}: {why}", index + 1), remedy)
 }
 
 /// From one square to another, in squares.

@@ -9,6 +9,7 @@ use crate::boundary::constraints::{ConstraintSystem, Held, systems};
 use crate::boundary::edges::{Chain, EdgeMean, edges_of};
 use crate::boundary::selector::Selector;
 use crate::boundary::supports::{Reaction, prescribed};
+use crate::particles::nothing_selected;
 use fissure_plane::{Point, Vector};
 use fissure_scene::{Scene, Selection, Support};
 
@@ -42,11 +43,15 @@ impl Supports {
             let held = |&&(field, node): &&(usize, Point)| holds(&selector, lattice, field, node, &bodies);
             // Of a side that no edge lies along: the nodes nearer to it than half a cell.
             let of_support = fields.iter().filter(|_| !is_edge || chains.is_empty()).filter(held);
-            let fields: Vec<u32> = of_support.map(|&(field, _)| field as u32).collect();
-            if means.is_empty() && fields.is_empty() {
-                return Err(lattice.particles.no_particle("support", index, &support.selection).into());
+            let held: Vec<u32> = of_support.map(|&(field, _)| field as u32).collect();
+            if means.is_empty() && held.is_empty() {
+                // What is held are nodes: between two of them there may be particles.
+                let with_mass = fields.iter().filter(|&&(field, _)| lattice.mass()[field] > 0.0);
+                let places: Vec<Point> = with_mass.map(|&(_, place)| place).collect();
+                let what = "node of the grid";
+                return Err(nothing_selected(what, &places, "support", index, &support.selection).into());
             }
-            Ok(Held { means, fields })
+            Ok(Held { means, fields: held })
         };
         let of_support = scene.supports.iter().enumerate().map(held).collect::<Result<Vec<_>, SimulationError>>()?;
         let systems = systems(&scene.supports, &of_support, &lattice.inverse_mass);

@@ -148,3 +148,21 @@ fn a_support_below_a_notch_leaves_the_other_face_at_rest() {
         assert!(below > 0.05 && above < 1e-3, "{notch}: {above} m/s above, {below} m/s below");
     }
 }
+
+/// Truth: the remedy that the message names. A support around a place between nodes may hold none of them, however many
+/// particles are there.
+#[test]
+fn a_support_between_nodes_says_how_large_it_must_be() {
+    let around = |radius: f64| {
+        let mut scene = plate([4.0, 2.0], 0.25, 1e-3);
+        let points = vec![Point::new(2.1, 1.12)];
+        hold(&mut scene, Selection::Near { points, radius }, [Some(0.0), None]);
+        scene
+    };
+    let message = Simulation::new(&around(0.1)).unwrap_err().to_string();
+    assert!(message.contains("support 1 selects no node of the grid"), "{message}");
+    let remedy = message.split("at least ").nth(1).unwrap().split(' ').next().unwrap();
+    let radius: f64 = remedy.parse().unwrap();
+    assert!(radius > 0.1, "{message}");
+    Simulation::new(&around(radius)).unwrap();
+}
