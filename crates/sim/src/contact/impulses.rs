@@ -7,6 +7,7 @@
 //! projection: Jean 1999; Moreau 1988); they begin with the impulses of the step before, scaled by the length of the
 //! step, without which what rests would sink a little in every step.
 
+use super::friction::{borne_by_friction, left_of};
 use fissure_plane::Vector;
 use serde::{Deserialize, Serialize};
 
@@ -109,8 +110,7 @@ impl Meetings {
             if sum > 0.0 { 1.0 / sum } else { 0.0 }
         };
         let masses = [along(normal), along(left_of(normal))];
-        let limit = friction_limit(friction, before.normal);
-        let impulse = Impulse { tangential: before.tangential.clamp(-limit, limit), ..before };
+        let impulse = Impulse { tangential: borne_by_friction(before.tangential, friction, before.normal), ..before };
         self.rows.push(Row { normal, allowed, friction, masses, first: first as u32, impulse });
     }
 
@@ -158,9 +158,8 @@ impl Meetings {
         }
         if row.friction > 0.0 {
             let tangent = left_of(row.normal);
-            let limit = friction_limit(row.friction, impulse.normal);
-            let sliding = relative(shares, velocity).dot(&tangent);
-            impulse.tangential = (impulse.tangential - sliding * row.masses[1]).clamp(-limit, limit);
+            let sticking = impulse.tangential - relative(shares, velocity).dot(&tangent) * row.masses[1];
+            impulse.tangential = borne_by_friction(sticking, row.friction, impulse.normal);
             apply(shares, tangent * (impulse.tangential - row.impulse.tangential), velocity);
         }
         self.rows[index].impulse = impulse;
@@ -186,15 +185,6 @@ impl Meetings {
         }
         work
     }
-}
-
-/// The largest tangential impulse; not 0 · ∞ for a friction without bound.
-fn friction_limit(friction: f64, normal: f64) -> f64 {
-    if normal > 0.0 { friction * normal } else { 0.0 }
-}
-
-fn left_of(normal: Vector) -> Vector {
-    Vector::new(-normal.y, normal.x)
 }
 
 fn relative(shares: &[Share], velocity: &Velocities) -> Vector {

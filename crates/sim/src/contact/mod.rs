@@ -7,9 +7,11 @@
 //!
 //! - [`neighbours`]: which vertices can come to which edges before the next look.
 //! - [`meeting`]: the nearest edge of a vertex, the gap and the normal.
-//! - [`impulses`]: impulses of all meetings together, with Coulomb's friction.
+//! - [`impulses`]: impulses of all meetings together.
+//! - [`friction`]: Coulomb's cone.
 
 mod cells;
+pub(crate) mod friction;
 pub(crate) mod impulses;
 pub(crate) mod meeting;
 pub(crate) mod neighbours;

@@ -23,6 +23,7 @@ use super::lattice::Lattice;
 use super::motion::Motion;
 use super::near::Near;
 use super::probes::Probes;
+use crate::contact::friction::{borne_by_friction, left_of};
 use crate::contact::neighbours::TOGETHER;
 use crate::crack::Crack;
 use crate::crack::cracks::{Cracks, Stretch};
@@ -175,8 +176,7 @@ impl Contacts {
         let Some(friction) = self.friction else { return };
         let mut meetings = self.meetings(probes, motion, kick, time_step);
         for meeting in &mut meetings {
-            let limit = friction_limit(friction, meeting.impulse[0]);
-            meeting.impulse[1] = meeting.impulse[1].clamp(-limit, limit);
+            meeting.impulse[1] = borne_by_friction(meeting.impulse[1], friction, meeting.impulse[0]);
             if meeting.impulse[0] > 0.0 {
                 self.push(meeting.point, meeting.whole(), mass, motion);
             }
@@ -269,9 +269,8 @@ impl Contacts {
         let reduced = point.reduced_mass(|field| mass[field] / f64::from(self.sharing[field]));
         let [normal, tangential] = meeting.impulse;
         let normal = (normal + (meeting.allowed - speed.dot(&meeting.normal)) * reduced).max(0.0);
-        let limit = friction_limit(friction, normal);
-        let tangential = (tangential - speed.dot(&left_of(meeting.normal)) * reduced).clamp(-limit, limit);
-        [normal, tangential]
+        let sticking = tangential - speed.dot(&left_of(meeting.normal)) * reduced;
+        [normal, borne_by_friction(sticking, friction, normal)]
     }
 
     /// The points whose faces could meet in a step, with what they did in the step before.
@@ -366,15 +365,6 @@ impl MeetingPoint {
             }
         }
     }
-}
-
-/// The largest tangential impulse; not 0 · ∞ for a friction without bound.
-fn friction_limit(friction: f64, normal: f64) -> f64 {
-    if normal > 0.0 { friction * normal } else { 0.0 }
-}
-
-fn left_of(normal: Vector) -> Vector {
-    Vector::new(-normal.y, normal.x)
 }
 
 fn add_points_of_node(
