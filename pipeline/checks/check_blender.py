@@ -6,7 +6,7 @@
 Blender's glTF importer walks through sets whose order changes from process to process: what works once may fail the next
 time. So each file is imported in 16 fresh processes, each with another PYTHONHASHSEED. Compared are, of GLB files, the
 objects with their names and piece numbers, positions, triangles, the material of each triangle, texture coordinates,
-normals and velocities; of PLY files positions, triangles and attributes. Without bpy nothing is checked.
+normals, velocities and what crack walls tell; of PLY files positions, triangles and attributes. Without bpy nothing is checked.
 """
 
 import importlib.util
@@ -41,14 +41,19 @@ class Glb:
         values = numpy.frombuffer(self.binary, TYPES[accessor["componentType"]], accessor["count"] * width, start)
         return values.reshape(-1, width)
 
+    def attribute(self, primitive, name):
+        """One of a primitive; zeros where only others of its mesh have it."""
+        attributes = primitive["attributes"]
+        return self.array(attributes[name]) if name in attributes else numpy.zeros_like(self.array(attributes["POSITION"]))
+
     def objects(self):
         """Name, extras and primitives of each node with a mesh; attributes of all primitives joined, as an importer joins them."""
         for node in self.document.get("nodes", []):
             if "mesh" not in node:
                 continue
             primitives = self.document["meshes"][node["mesh"]]["primitives"]
-            names = primitives[0]["attributes"]
-            joined = {name: numpy.concatenate([self.array(p["attributes"][name]) for p in primitives]) for name in names}
+            names = dict.fromkeys(name for primitive in primitives for name in primitive["attributes"])
+            joined = {name: numpy.concatenate([self.attribute(p, name) for p in primitives]) for name in names}
             first, triangles, materials = 0, [], []
             for primitive in primitives:
                 if "indices" in primitive:
@@ -99,11 +104,12 @@ def glb_problems(path):
         mesh, found = thing.data, same_mesh(thing.data, turned(attributes["POSITION"]), triangles)
         if "piece" not in extras or {key: thing.get(key) for key in extras} != extras:
             found.append(f"the properties {dict(thing.items())} for the extras {extras}, which should name the piece")
-        velocity = mesh.attributes.get("_VELOCITY")
-        if velocity is None or (velocity.domain, velocity.data_type) != ("POINT", "FLOAT_VECTOR"):
-            found.append("no _VELOCITY")
-        elif not numpy.array_equal(values(velocity.data, "vector", 3), attributes["_VELOCITY"]):
-            found.append("_VELOCITY differs")
+        for own in (name for name in attributes if name.startswith("_")):
+            arrived = mesh.attributes.get(own)
+            if arrived is None or (arrived.domain, arrived.data_type) != ("POINT", "FLOAT_VECTOR"):
+                found.append(f"no {own}")
+            elif not numpy.array_equal(values(arrived.data, "vector", 3), attributes[own]):
+                found.append(f"{own} differs")
         if len(triangles) > 0 and not found:
             found += surface_problems(mesh, attributes, triangles, materials)
         problems += [f"{name}: {problem}" for problem in found]

@@ -1,4 +1,4 @@
-"""Holds USD, VTK, OBJ and SVG files of a run against its GLB files and its take.
+"""Holds USD, VTK, OBJ and SVG files of a run against its GLB files and these against its take.
 
     pip install numpy safetensors usd-core vtk meshio trimesh
     python check_formats.py OUT/NAME.take FOLDER
@@ -9,6 +9,9 @@ FOLDER holds the files of `fissure post OUT/NAME.take --formats glb,obj,usda,vtk
 - USD: the stage over all frames opens, and its points, normals, velocities and materials are those of the GLB file, to
   the bit, and texture coordinates upwards; a fragment that is not there yet has no points; extents hold the points; a
   file of a frame by itself says the same.
+- Where crack walls tell how they came about (`--set output.attributes=["crack_age","mouth_distance","mode_1"]`), ages and
+  K_I of each wall lie within those of the take, and distances within its longest way; USD and VTK files say the same as
+  the GLB file, to the bit, and VTK nothing on other surfaces.
 - VTK: its own reader reads surfaces with as many triangles as the manifest says, and of its volume within 1e-5 (which
   the reader sums in single precision); it and meshio read the particles of the take, to the bit; the list names the times.
 - OBJ: trimesh reads each object, of the volume of the GLB file within 1e-6, and closed.
@@ -32,6 +35,7 @@ from vtk.util.numpy_support import vtk_to_numpy
 
 VTK_VOLUME = 1e-5
 RELATIVE = 1e-6
+ATTRIBUTES = ("crack_age", "mouth_distance", "mode_1")
 
 
 def primitives(path):
@@ -47,6 +51,26 @@ def primitives(path):
                 arrays["indices"] = glb.table(primitive["indices"]).reshape(-1)
             found[node["name"], material] = arrays
     return found
+
+
+def history_problems(found, frame):
+    """Problems of what the walls of one GLB file tell, against the frame of the take."""
+    told = [arrays["_CRACK"] for arrays in found.values() if "_CRACK" in arrays]
+    if not told:
+        return
+    ages, ways, modes = numpy.concatenate(told).T
+    times, known = frame["cracks.formed_time"], frame["cracks.formed_mode_1"]
+    youngest, oldest = frame["frame.time"][0] - times.max(), frame["frame.time"][0] - times.min()
+    room = RELATIVE * max(oldest, 1e-30)
+    if ages.min() < max(youngest, 0.0) - room or ages.max() > oldest + room:
+        yield f"ages from {ages.min()} to {ages.max()} for {youngest} to {oldest}"
+    if modes.min() < min(known.min(), 0.0) * (1 + RELATIVE) or modes.max() > known.max() * (1 + RELATIVE):
+        yield f"K_I from {modes.min()} to {modes.max()} for {known.min()} to {known.max()}"
+    steps = numpy.linalg.norm(numpy.diff(frame["cracks.rest"], axis=0), axis=1)
+    ends = frame["cracks.offset"][1:-1]
+    longest = numpy.delete(steps, ends - 1).sum()
+    if ways.min() < 0 or ways.max() > longest * (1 + RELATIVE):
+        yield f"distances from {ways.min()} to {ways.max()} along cracks of {longest} in all"
 
 
 def usd_problems(stage, frame, expected):
@@ -75,10 +99,17 @@ def usd_problems(stage, frame, expected):
             found["TEXCOORD_0"] = read(UsdGeom.PrimvarsAPI(prim).GetPrimvar("st"))
             if (metres := UsdGeom.PrimvarsAPI(prim).GetPrimvar("st1")).HasValue():
                 found["TEXCOORD_1"] = read(metres)
+            told = [UsdGeom.PrimvarsAPI(prim).GetPrimvar(name) for name in ATTRIBUTES]
+            if any(one.HasValue() for one in told):
+                zeros = numpy.zeros(len(points), "float32")
+                found["_CRACK"] = numpy.stack([read(one) if one.HasValue() else zeros for one in told], 1)
+                if "_CRACK" not in want or {one.GetInterpolation() for one in told if one.HasValue()} != {"vertex"}:
+                    problems.append(f"{key}: tells of a crack where the GLB file does not, or not at each vertex")
+                    continue
             sets = [name for name in want if name.startswith("TEXCOORD_")]
             want = {**want, **{name: [0, 1] + want[name] * [1, -1] for name in sets}}
-            if set(sets) - set(found):
-                problems.append(f"{key}: {sorted(set(sets) - set(found))} are missing")
+            if lost := (set(sets) | ({"_CRACK"} & set(want))) - set(found):
+                problems.append(f"{key}: {sorted(lost)} are missing")
             if set(read(mesh.GetFaceVertexCountsAttr())) != {3} or mesh.GetNormalsInterpolation() != "vertex":
                 problems.append(f"{key}: no triangles with a normal for each vertex")
         for name, values in found.items():
@@ -150,6 +181,32 @@ def check_vtk(folder, records, sequences, take):
                 solid.SetInputData(data)
                 if abs(solid.GetVolume() / record["volume"] - 1) > VTK_VOLUME:
                     yield record["file"], f"volume {solid.GetVolume()} instead of {record['volume']}"
+            of_glb = primitives((folder / record["file"]).with_suffix(".glb"))
+            for problem in vtk_history_problems(data, of_glb):
+                yield record["file"], problem
+
+
+def vtk_history_problems(data, of_glb):
+    """Problems of what a surface of a VTK file tells of crack walls, against the GLB file of the same."""
+    arrays = {name: data.GetPointData().GetArray(name) for name in ATTRIBUTES}
+    told = {name: vtk_to_numpy(array) for name, array in arrays.items() if array is not None}
+    width = len(ATTRIBUTES)
+    expected = [one.get("_CRACK", numpy.zeros((len(one["POSITION"]), width), "float32")) for one in of_glb.values()]
+    expected = numpy.concatenate(expected) if expected else numpy.zeros((0, width), "float32")
+    if not told:
+        if any("_CRACK" in one for one in of_glb.values()):
+            yield "tells nothing of crack walls"
+        return
+    for column, name in enumerate(ATTRIBUTES):
+        if not numpy.array_equal(told.get(name, numpy.zeros(len(expected), "float32")), expected[:, column]):
+            yield f"{name} differs"
+
+
+def check_glb(folder, records, take):
+    for record in records:
+        frame = load_file(take / f"frame.{record['frame']:04}.safetensors")
+        for problem in history_problems(primitives(folder / record["file"]), frame):
+            yield record["file"], problem
 
 
 def check_obj(folder, records):
@@ -192,6 +249,7 @@ def main(take, folder):
         return [record for record in manifest.get(kind, []) if record["format"] == name]
 
     problems = [
+        *check_glb(folder, of("files", "glb"), take),
         *check_usd(folder, of("files", "usda"), of("sequences", "usda")),
         *check_vtk(folder, of("files", "vtk"), of("sequences", "vtk"), take),
         *check_obj(folder, of("files", "obj")),

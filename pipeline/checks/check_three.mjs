@@ -24,8 +24,10 @@ function problems(scene) {
     if (!Number.isInteger(object.userData.piece)) found.push(`${object.name} has no piece`);
     object.traverse((part) => {
       if (!part.geometry) return;
-      const { position, normal, uv, _velocity } = part.geometry.attributes;
+      const { position, normal, uv, _velocity, _crack } = part.geometry.attributes;
       if (!position || _velocity?.itemSize !== 3) found.push(`${object.name} lacks positions or velocities`);
+      const isWall = part.material.name === "inside";
+      if (_crack && (_crack.itemSize !== 3 || !isWall)) found.push(`${object.name} tells of cracks otherwise`);
       if (part.isPoints) return;
       if (!normal || !uv) found.push(`${object.name} lacks normals or texture coordinates`);
       if (!["outside", "inside"].includes(part.material.name)) found.push(`${object.name} has ${part.material.name}`);

@@ -23,6 +23,9 @@ pub(crate) fn post(arguments: &PostArguments, interrupt: &Interrupt, report: &Re
     must_show(&scene, &arguments.mesh)?;
     let numbers = take_path::chosen_frames(&take, &path, arguments.frames.as_ref())?;
     take.remarks()?.iter().for_each(|remark| report.warn(&remark.to_string()));
+    if !scene.output.attributes.is_empty() && !take.tells_how_cracks_formed() {
+        report.warn("this take is of a version that does not say how cracks formed: meshes lack `output.attributes`; `fissure run --overwrite` simulates it again");
+    }
     let folder = match &arguments.output {
         Some(folder) => folder.clone(),
         None => take_path::folder_of(&path),

@@ -8,7 +8,7 @@ use fissure_scene::{Point, Vector};
 
 /// Twice the area that `rings` enclose, in squared grid steps: places they wind around at least once count.
 pub fn twice_enclosed(rings: &[Vec<[i64; 2]>]) -> i128 {
-    let carried = [Carried { rest: Point::origin(), velocity: Vector::zeros(), arc: 0.0 }; 2];
+    let carried = [Carried::within(Point::origin(), Vector::zeros()); 2];
     let mut edges = Vec::new();
     for ring in rings {
         let corners = ring.iter().map(|&[x, y]| GridPoint::new(x, y));

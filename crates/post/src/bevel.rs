@@ -137,6 +137,7 @@ impl Extrusion<'_> {
                 normal: [0.0; 3],
                 texture: [carried.arc / self.texture_size, height / self.texture_size],
                 velocity: [carried.velocity.x, carried.velocity.y, 0.0],
+                history: carried.history,
             });
             mesh.vertices.len() as u32 - 1
         };

@@ -43,7 +43,7 @@ fn collider_mesh(
         let next = (i + 1) % ring.len();
         let carried = |j: usize, arc: f64| {
             let arm = placed[j] - pose.position;
-            Carried { rest: ring[j], velocity: velocity + spin * Vector::new(-arm.y, arm.x), arc }
+            Carried { arc, ..Carried::within(ring[j], velocity + spin * Vector::new(-arm.y, arm.x)) }
         };
         let start = carried(i, arc);
         arc += (ring[next] - ring[i]).norm();

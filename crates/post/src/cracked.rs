@@ -9,6 +9,7 @@ use crate::error::PostError;
 use crate::explode::offsets;
 use crate::extrude::Extrusion;
 use crate::held_open::{parted_points, shifts as held_open};
+use crate::history::{attributes, histories};
 use crate::interior::Interior;
 use crate::mesh::{Content, Mesh, MeshDefect, object_name};
 use crate::needles::blunt_needles;
@@ -27,7 +28,7 @@ use crate::snap::Grid;
 use crate::source::{Carried, SourceEdge};
 use crate::triangulate::{Cap, Division, triangulate};
 use crate::widening::{Shift, Widening, widened};
-use fissure_scene::{CrackFrame, Cut, Fragments, Frame, Region, Scene, Vector, Walls};
+use fissure_scene::{Attribute, CrackFrame, Cut, Fragments, Frame, Region, Scene, Vector, Walls};
 use std::collections::BTreeMap;
 
 /// Overlaps of fragments that are at most so wide in the mean are inaccuracies of contact, in cells: faces that press
@@ -65,7 +66,8 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
     let relief = options
         .roughness
         .map(|roughness| Relief::new(roughness, options.thickness, frame, &cracks.cracks, &cracks.offsets));
-    let lines = MovedLines::new(scene, frame, &cracks, shifts);
+    let asked = !options.attributes.is_empty();
+    let lines = MovedLines::new(scene, frame, &cracks, shifts).with(asked.then(|| histories(frame)).flatten());
     let mut objects = BTreeMap::<ObjectKey, Vec<Vec<Vec<SourceEdge>>>>::new();
     for (fragment, number) in fragments.list().iter().zip(numbers) {
         let grid = grids[fragment.body as usize];
@@ -163,6 +165,8 @@ struct Solids<'a> {
     names: Vec<String>,
     /// How rough the walls of cracks are.
     relief: Option<&'a Relief>,
+    /// What of the history of crack walls is known and asked for.
+    attributes: Vec<Attribute>,
     check: fn(&Mesh) -> Result<(), MeshDefect>,
 }
 
@@ -170,7 +174,8 @@ impl<'a> Solids<'a> {
     fn new(scene: &'a Scene, frame: &'a Frame, options: &'a PostOptions, grids: &'a [Grid]) -> Self {
         let interior = |body| Interior::new(frame, body, scene.particle_spacing, options.cut);
         let interiors = (0..scene.bodies.len() as u32).map(interior).collect();
-        Self { scene, frame, options, grids, interiors, names: body_names(scene), relief: None, check: Mesh::check }
+        let (names, attributes) = (body_names(scene), attributes(frame, options));
+        Self { scene, frame, options, grids, interiors, names, relief: None, attributes, check: Mesh::check }
     }
 
     /// Extrudes what the boundaries of fragments enclose as they are now; nothing where that is no more than rounding.
@@ -317,6 +322,7 @@ impl<'a> Solids<'a> {
             let content = Content::Solid { area, thickness: self.options.thickness, slack: 0.0 };
             let mut mesh = Mesh::new(name, piece, content);
             mesh.texture_size = self.options.uv_in_metres.then_some(extrusion.texture_size);
+            mesh.attributes.clone_from(&self.attributes);
             caps.iter().for_each(|(cap, within)| extrusion.solid(cap, within, &mut mesh));
             mesh
         };
@@ -350,7 +356,7 @@ mod tests {
     fn boundary(x: f64, grid: Grid) -> Vec<SourceEdge> {
         let corners = [(0.0, 0.0), (0.5, 0.0), (0.500_05, -1e-4), (0.5001, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
         let places = corners.map(|(u, v)| Point::new(x + u, v));
-        let carried = |rest| Carried { rest, velocity: Vector::zeros(), arc: 0.0 };
+        let carried = |rest| Carried::within(rest, Vector::zeros());
         let edge = |(a, b): (&Point, &Point)| SourceEdge {
             a: grid.snap(*a),
             b: grid.snap(*b),

@@ -1,5 +1,6 @@
 //! The boundary of a fragment as edges of the moved body.
 
+use crate::history::History;
 use crate::opening::arc_lengths;
 use crate::slot::Slot;
 use crate::smooth::SmoothCracks;
@@ -38,6 +39,8 @@ pub(crate) struct MovedLines<'a> {
     crack_arcs: Vec<Vec<f64>>,
     /// How far the faces of each crack are moved at each of its points.
     shifts: Vec<Vec<Shift>>,
+    /// How each point of each crack came about, where that is asked for.
+    histories: Option<Vec<Vec<History>>>,
 }
 
 impl<'a> MovedLines<'a> {
@@ -60,7 +63,13 @@ impl<'a> MovedLines<'a> {
             ring_arcs: frame.outlines.iter().map(|o| ring(&o.rest)).collect(),
             crack_arcs: frame.cracks.iter().map(|c| arc_lengths(&c.rest, first(c.crack))).collect(),
             shifts,
+            histories: None,
         }
+    }
+
+    /// The lines with how each point of each crack came about.
+    pub(crate) fn with(self, histories: Option<Vec<Vec<History>>>) -> Self {
+        Self { histories, ..self }
     }
 
     /// The edges of a boundary, in its order, on `grid`. Where the walk passes from one line to another both edges end
@@ -72,11 +81,12 @@ impl<'a> MovedLines<'a> {
         (0..count)
             .map(|i| {
                 let (edge, [start, end]) = (&boundary[i], [corners[i], corners[(i + 1) % count]]);
-                let arcs = self.arcs(edge);
+                let (arcs, histories) = (self.arcs(edge), self.histories(edge));
                 let carried = |k: usize, now: Now| Carried {
                     rest: edge.rest[k] + self.offset(edge, k),
                     velocity: now.velocity,
                     arc: arcs[k],
+                    history: histories[k],
                 };
                 SourceEdge {
                     a: grid.snap(start.place),
@@ -175,6 +185,17 @@ impl<'a> MovedLines<'a> {
         let (Line::Above(i) | Line::Below(i)) = line else { return false };
         let crack = &self.frame.cracks[i];
         (point == 0 && crack.start != CrackEnd::Tip) || (point + 1 == crack.rest.len() && crack.end != CrackEnd::Tip)
+    }
+
+    /// How the wall came about where an edge begins and ends.
+    fn histories(&self, edge: &BoundaryEdge) -> [History; 2] {
+        match (edge.line, &self.histories) {
+            (Line::Above(i) | Line::Below(i), Some(histories)) => {
+                let [p, q] = edge.points.map(|point| histories[i][point]);
+                edge.span.map(|part| if part == 1.0 { q } else { p.between(q, part) })
+            }
+            _ => [History::default(); 2],
+        }
     }
 
     /// Length at rest along the line, where an edge begins and ends [m].

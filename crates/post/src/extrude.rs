@@ -2,6 +2,7 @@
 
 use crate::bevel::{BevelCorner, BevelSize};
 use crate::boolean::Edge;
+use crate::history::History;
 use crate::mesh::{Mesh, Vertex};
 use crate::relief::Relief;
 use crate::slot::Slot;
@@ -69,6 +70,7 @@ impl Extrusion<'_> {
                     normal: [0.0, 0.0, side],
                     texture: [texture.x, texture.y],
                     velocity: [carried.velocity.x, carried.velocity.y, 0.0],
+                    history: History::default(),
                 });
             }
             let turned = |[a, b, c]: [u32; 3]| if side > 0.0 { [a, b, c] } else { [a, c, b] };
@@ -132,6 +134,7 @@ impl Extrusion<'_> {
                 normal: [post.normal.x, post.normal.y, 0.0],
                 texture: [post.carried.arc / self.texture_size, (z + 0.5 * self.thickness) / self.texture_size],
                 velocity: [post.carried.velocity.x, post.carried.velocity.y, 0.0],
+                history: post.carried.history,
             });
         }
         [first, first + 1]

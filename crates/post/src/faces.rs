@@ -3,6 +3,7 @@
 use crate::body_names::body_names;
 use crate::boolean::{Edge, SourceIndex};
 use crate::extrude::Extrusion;
+use crate::history::{History, attributes, histories};
 use crate::mesh::{Content, Mesh, object_name};
 use crate::opening::opening_edges;
 use crate::options::PostOptions;
@@ -18,21 +19,32 @@ pub(crate) fn face_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -
     let relief = options
         .roughness
         .map(|roughness| Relief::new(roughness, options.thickness, frame, &cracks.cracks, &cracks.offsets));
-    let relief = relief.as_ref();
-    let Some(opening) = &options.opening else {
-        return cracks.cracks.iter().map(|crack| face_mesh(scene, crack, options, relief)).collect();
+    let attributes = attributes(frame, options);
+    let known = if attributes.is_empty() { None } else { histories(frame) };
+    let mut known = known.unwrap_or_default().into_iter();
+    let mut face_mesh = |crack: &CrackFrame| {
+        let mut mesh = face_mesh(scene, crack, options, relief.as_ref(), &known.next().unwrap_or_default());
+        mesh.attributes.clone_from(&attributes);
+        mesh
     };
+    let Some(opening) = &options.opening else { return cracks.cracks.iter().map(face_mesh).collect() };
     let widening = Widening::new(opening, scene, frame.time);
     let shown = |crack: &CrackFrame| widened(crack, &widening.shifts(crack));
-    cracks.cracks.iter().map(|crack| face_mesh(scene, &shown(crack), options, relief)).collect()
+    cracks.cracks.iter().map(|crack| face_mesh(&shown(crack))).collect()
 }
 
-fn face_mesh(scene: &Scene, crack: &CrackFrame, options: &PostOptions, relief: Option<&Relief>) -> Mesh {
+fn face_mesh(
+    scene: &Scene,
+    crack: &CrackFrame,
+    options: &PostOptions,
+    relief: Option<&Relief>,
+    histories: &[History],
+) -> Mesh {
     let body = &scene.bodies[crack.body as usize];
     let (low, high) = body.region.bounds();
     let grid = Grid::covering(crack.above.iter().chain(&crack.below), 0.0);
     let first = scene.cracks.get(crack.crack as usize).and_then(|c| c.points.first().copied());
-    let sources = opening_edges(crack, first, grid);
+    let sources = opening_edges(crack, first, histories, grid);
     let extrusion = Extrusion {
         grid,
         sources: &sources,

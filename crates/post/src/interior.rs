@@ -40,7 +40,7 @@ impl<'a> Interior<'a> {
         let of_corner = |&point: &GridPoint| {
             let place = extrusion.grid.place(point);
             if let Some((rest, velocity)) = self.at(place, piece) {
-                return Carried { rest, velocity, arc: 0.0 };
+                return Carried::within(rest, velocity);
             }
             let distance = |p: GridPoint| ((p.x - point.x) as f64).hypot((p.y - point.y) as f64);
             let nearest = outer.iter().min_by(|p, q| distance(p.0).total_cmp(&distance(q.0)));
@@ -48,7 +48,7 @@ impl<'a> Interior<'a> {
                 rest: carried.rest + (place - extrusion.grid.place(*corner)),
                 ..*carried
             };
-            nearest.map_or(Carried { rest: place, velocity: Vector::zeros(), arc: 0.0 }, beside)
+            nearest.map_or(Carried::within(place, Vector::zeros()), beside)
         };
         cap.within.iter().map(of_corner).collect()
     }

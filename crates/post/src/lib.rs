@@ -52,6 +52,7 @@ mod extrude;
 mod faces;
 mod formats;
 mod held_open;
+mod history;
 mod interior;
 #[cfg(feature = "files")]
 mod manifest;
@@ -90,6 +91,7 @@ mod write_error;
 
 pub use error::PostError;
 pub use formats::{FormatError, Sequence, Shot, encode, sequence};
+pub use history::History;
 #[cfg(feature = "files")]
 pub use manifest::Manifest;
 pub use mesh::{Content, Mesh, MeshDefect, Vertex};

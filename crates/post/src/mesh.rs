@@ -1,7 +1,8 @@
 //! Meshes as they are written, and the check that a solid is one.
 
+use crate::history::History;
 use crate::slot::Slot;
-use fissure_scene::Vector;
+use fissure_scene::{Attribute, Vector};
 use rustc_hash::FxHashMap;
 
 /// A vertex. The drawing lies in the x–y plane, y up, z towards the viewer.
@@ -15,6 +16,8 @@ pub struct Vertex {
     pub texture: [f64; 2],
     /// Velocity [m/s].
     pub velocity: [f64; 3],
+    /// How the wall of a crack came about here.
+    pub history: History,
 }
 
 /// What a mesh is made of.
@@ -48,6 +51,8 @@ pub struct Mesh {
     pub content: Content,
     /// Length of a unit of the texture coordinates at rest [m], where they are written in metres too.
     pub texture_size: Option<f64>,
+    /// What of the history of its crack walls is written.
+    pub attributes: Vec<Attribute>,
     /// Vertices.
     pub vertices: Vec<Vertex>,
     /// Triangles by slot, counter-clockwise from outside.
@@ -57,7 +62,8 @@ pub struct Mesh {
 impl Mesh {
     /// An empty mesh.
     pub(crate) fn new(name: String, piece: u32, content: Content) -> Self {
-        Self { name, piece, content, texture_size: None, vertices: Vec::new(), triangles: [Vec::new(), Vec::new()] }
+        let triangles = [Vec::new(), Vec::new()];
+        Self { name, piece, content, texture_size: None, attributes: Vec::new(), vertices: Vec::new(), triangles }
     }
 
     /// The mesh moved in the drawing plane [m].
@@ -254,7 +260,13 @@ mod tests {
         let content = Content::Solid { area: 0.5, thickness: 1.0 / 3.0, slack: 0.0 };
         let mut mesh = Mesh::new("tetrahedron".to_owned(), 0, content);
         for position in [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
-            mesh.vertices.push(Vertex { position, normal: [0.0; 3], texture: [0.0; 2], velocity: [0.0; 3] });
+            mesh.vertices.push(Vertex {
+                position,
+                normal: [0.0; 3],
+                texture: [0.0; 2],
+                velocity: [0.0; 3],
+                history: History::default(),
+            });
         }
         mesh.triangles[0] = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
         mesh

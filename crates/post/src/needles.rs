@@ -171,7 +171,13 @@ impl Needle {
         let (first, last) = (of(self.before), of(self.after));
         let [p, q] = self.ends;
         let slot = if first.slot == Slot::Inside { Slot::Inside } else { last.slot };
-        let across = SourceEdge { a: p, b: q, carried: [first.at(p), last.at(q)], slot };
+        let mut carried = [first.at(p), last.at(q)];
+        if first.slot != last.slot {
+            // An outline has no history.
+            let wall = carried[usize::from(last.slot == Slot::Inside)].history;
+            carried.iter_mut().for_each(|carried| carried.history = wall);
+        }
+        let across = SourceEdge { a: p, b: q, carried, slot };
         let source = SourceIndex(sources.len() as u32);
         sources.push(across);
         *contour = self.left_of(contour, source);
@@ -239,7 +245,7 @@ mod tests {
 
     fn shapes(ring: &[(f64, f64)], slot: Slot) -> (Vec<Shape>, Vec<SourceEdge>) {
         let point = |&(x, y): &(f64, f64)| GridPoint::new(x.round() as i64, y.round() as i64);
-        let carried = |(x, y): (f64, f64)| Carried { rest: Point::new(x, y), velocity: Vector::zeros(), arc: 0.0 };
+        let carried = |(x, y): (f64, f64)| Carried::within(Point::new(x, y), Vector::zeros());
         let edges = ring.iter().zip(ring.iter().cycle().skip(1));
         let source = |(p, q)| SourceEdge { a: point(p), b: point(q), carried: [carried(*p), carried(*q)], slot };
         let sources: Vec<SourceEdge> = edges.map(source).collect();

@@ -1,5 +1,6 @@
 //! The opening polygon of a crack: the hole that its two faces leave.
 
+use crate::history::History;
 use crate::slot::Slot;
 use crate::snap::{Grid, GridPoint};
 use crate::source::{Carried, SourceEdge};
@@ -19,9 +20,16 @@ use fissure_scene::{CrackEnd, CrackFrame, Point, Vector};
 /// `first`: where the arc length is counted from (a rest position on the crack), so that textures stay put when the
 /// crack grows at its start; none: its first point.
 ///
+/// `histories`: how each point came about.
+///
 /// Returns 2 n edges for n crack points: the n − 1 of the face above, the closing edge at the end, the n − 1 of the
 /// face below, the closing edge at the start. Edges whose ends fall on one grid point are among them.
-pub(crate) fn opening_edges(crack: &CrackFrame, first: Option<Point>, grid: Grid) -> Vec<SourceEdge> {
+pub(crate) fn opening_edges(
+    crack: &CrackFrame,
+    first: Option<Point>,
+    histories: &[History],
+    grid: Grid,
+) -> Vec<SourceEdge> {
     let count = crack.rest.len();
     let arcs = arc_lengths(&crack.rest, first);
     let is_tip = |i: usize| (i == 0 && crack.start == CrackEnd::Tip) || (i + 1 == count && crack.end == CrackEnd::Tip);
@@ -34,7 +42,8 @@ pub(crate) fn opening_edges(crack: &CrackFrame, first: Option<Point>, grid: Grid
         } else {
             (face[i], velocity[i])
         };
-        (grid.snap(place), Carried { rest: crack.rest[i], velocity, arc: arcs[i] })
+        let history = histories.get(i).copied().unwrap_or_default();
+        (grid.snap(place), Carried { rest: crack.rest[i], velocity, arc: arcs[i], history })
     };
     let corners: Vec<_> = (0..count)
         .map(|i| corner(i, &crack.above, &crack.above_velocity))

@@ -1,7 +1,7 @@
 //! How a frame becomes meshes.
 
 use crate::error::PostError;
-use fissure_scene::{Curve, Cut, OpeningSettings, OutputSettings, Part, Roughness, UpAxis, Walls};
+use fissure_scene::{Attribute, Curve, Cut, OpeningSettings, OutputSettings, Part, Roughness, UpAxis, Walls};
 
 /// Shortest edge of contours, as a part of the body: twice the distance at which readers merge vertices, because
 /// triangles without small angles need shorter ones than their outline has.
@@ -31,6 +31,8 @@ pub struct PostOptions {
     pub bevel: f64,
     /// Whether meshes have a second set of texture coordinates, in metres.
     pub uv_in_metres: bool,
+    /// What of the history of crack walls meshes tell.
+    pub attributes: Vec<Attribute>,
     /// Length of the edges within caps, at most; none: as long as may be [m].
     pub cap_size: Option<f64>,
     /// How wide cracks are shown; none: as they are.
@@ -58,6 +60,7 @@ impl From<&OutputSettings> for PostOptions {
             roughness: output.surfaces.roughness,
             bevel: output.surfaces.bevel,
             uv_in_metres: output.surfaces.uv_in_metres,
+            attributes: output.attributes.clone(),
             shortest_edge: SHORTEST_EDGE,
             cap_size: output.surfaces.cap_size,
             parts: output.parts.clone(),

@@ -12,9 +12,9 @@ pub(crate) fn outline_edges(outline: &OutlineFrame, grid: Grid) -> Vec<SourceEdg
     (0..count)
         .map(|i| {
             let next = (i + 1) % count;
-            let start = Carried { rest: outline.rest[i], velocity: outline.velocity[i], arc };
+            let start = Carried { arc, ..Carried::within(outline.rest[i], outline.velocity[i]) };
             arc += (outline.rest[next] - outline.rest[i]).norm();
-            let end = Carried { rest: outline.rest[next], velocity: outline.velocity[next], arc };
+            let end = Carried { arc, ..Carried::within(outline.rest[next], outline.velocity[next]) };
             SourceEdge {
                 a: grid.snap(outline.position[i]),
                 b: grid.snap(outline.position[next]),

@@ -246,7 +246,10 @@ impl Lattice {
                 let (edge, _) = chain.at(0.5 * (middle[k].0 + middle[k + 1].0));
                 let source = &fragment.sources[local(edge).0 as usize];
                 // Lengths along another line have nothing to do with those along this one.
-                let along = |k: usize| Carried { arc: source.at(chain.at(middle[k].0).1).arc, ..carried(k) };
+                let along = |k: usize| {
+                    let Carried { arc, history, .. } = source.at(chain.at(middle[k].0).1);
+                    Carried { arc, history, ..carried(k) }
+                };
                 SourceEdge { a: place(k), b: place(k + 1), carried: [along(k), along(k + 1)], slot: source.slot }
             })
             .collect();
@@ -278,7 +281,7 @@ impl Lattice {
         let own = |p: GridPoint| GridPoint::new(rounded(p.x, scale), rounded(p.y, scale));
         let carried = |fragment: &Enclosed, p: GridPoint| {
             let (rest, velocity) = material(fragment, fragment.grid.place(p))?;
-            Some(Carried { rest, velocity, arc: 0.0 })
+            Some(Carried { history: fragment.sources[0].carried[0].history, ..Carried::within(rest, velocity) })
         };
         let mut contours = Vec::with_capacity(region.len());
         for contour in region {

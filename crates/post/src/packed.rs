@@ -1,5 +1,6 @@
 //! Meshes as files hold them: single precision, only the vertices that are used.
 
+use crate::history::History;
 use crate::mesh::{Mesh, Vertex};
 use fissure_scene::UpAxis;
 
@@ -10,6 +11,7 @@ pub(crate) struct PackedVertex {
     pub(crate) normal: [f32; 3],
     pub(crate) texture: [f32; 2],
     pub(crate) velocity: [f32; 3],
+    pub(crate) history: History,
 }
 
 impl PackedVertex {
@@ -41,6 +43,7 @@ pub(crate) fn pack(vertex: &Vertex, convention: Convention) -> PackedVertex {
         normal: turn(vertex.normal),
         texture: vertex.texture.map(|x| x as f32),
         velocity: turn(vertex.velocity.map(|v| v * convention.time_scale)),
+        history: vertex.history,
     }
 }
 

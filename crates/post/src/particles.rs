@@ -1,6 +1,7 @@
 //! The particles as points.
 
 use crate::body_names::body_names;
+use crate::history::History;
 use crate::mesh::{Content, Mesh, Vertex, object_name};
 use fissure_scene::{Frame, Scene};
 use std::collections::BTreeMap;
@@ -21,6 +22,7 @@ pub(crate) fn particle_meshes(scene: &Scene, frame: &Frame) -> Vec<Mesh> {
             normal: [0.0; 3],
             texture: [0.0; 2],
             velocity: [velocity.x, velocity.y, 0.0],
+            history: History::default(),
         });
     }
     meshes.into_values().collect()

@@ -62,7 +62,7 @@ pub(crate) fn rest_cap(
                         let rest = Point::new(x, y) * rest_grid.step;
                         let (place, velocity) = interior.moved(rest, piece)?;
                         within.push(grid.snap(place));
-                        carried.push(Carried { rest, velocity, arc: 0.0 });
+                        carried.push(Carried::within(rest, velocity));
                         let new = sides.count + within.len() as u32 - 1;
                         number.insert(vertex.index(), new);
                         new

@@ -126,11 +126,7 @@ impl Extrusion<'_> {
         let last = (start.max(end) / step - BESIDE).floor() as i64;
         let place = |k: i64| {
             let part = (k as f64 * step - start) / (end - start);
-            let carried = Carried {
-                rest: from.rest + part * (to.rest - from.rest),
-                velocity: from.velocity + part * (to.velocity - from.velocity),
-                arc: from.arc + part * (to.arc - from.arc),
-            };
+            let carried = from.between(&to, part);
             let turn = (turns[0] + part * (turns[1] - turns[0])).normalize();
             let moves = Some(((crack, k as f64 * step), turn));
             Place { now: a + part * (b - a), carried, moves }
@@ -159,6 +155,7 @@ impl Extrusion<'_> {
                 normal: [0.0; 3],
                 texture: [carried.arc / self.texture_size, (z + 0.5 * self.thickness) / self.texture_size],
                 velocity: [carried.velocity.x, carried.velocity.y, 0.0],
+                history: carried.history,
             });
         }
         (first..mesh.vertices.len() as u32).collect()

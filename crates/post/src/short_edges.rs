@@ -99,8 +99,11 @@ fn merge(contour: &mut Contour, first: usize, sources: &mut Vec<SourceEdge>) {
     let longer = if length(&one) < length(&two) { source_two } else { source_one };
     if source_one.slot != source_two.slot || source_one.at(one.b).arc != source_two.at(two.a).arc {
         // Lengths along two lines have nothing to do with each other.
-        let arc = |carried: Carried, point| Carried { arc: longer.at(point).arc, ..carried };
-        (start, end) = (arc(start, one.a), arc(end, two.b));
+        let own = |carried: Carried, point| {
+            let Carried { arc, history, .. } = longer.at(point);
+            Carried { arc, history, ..carried }
+        };
+        (start, end) = (own(start, one.a), own(end, two.b));
     }
     let source = SourceIndex(sources.len() as u32);
     sources.push(SourceEdge { a: one.a, b: two.b, carried: [start, end], slot: longer.slot });
@@ -118,7 +121,7 @@ mod tests {
 
     /// The boundary of rings, as sources that carry nothing.
     fn sources(rings: &[Vec<(i64, i64)>]) -> Vec<SourceEdge> {
-        let carried = [Carried { rest: Point::origin(), velocity: Vector::zeros(), arc: 0.0 }; 2];
+        let carried = [Carried::within(Point::origin(), Vector::zeros()); 2];
         let edges = rings.iter().flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)));
         let point = |&(x, y): &(i64, i64)| GridPoint::new(x, y);
         edges.map(|(a, b)| SourceEdge { a: point(a), b: point(b), carried, slot: Slot::Inside }).collect()

@@ -1,5 +1,6 @@
 //! Where a boundary edge comes from, and what the material there carries.
 
+use crate::history::History;
 use crate::slot::Slot;
 use crate::snap::GridPoint;
 use fissure_scene::{Point, Vector};
@@ -13,6 +14,25 @@ pub(crate) struct Carried {
     pub(crate) velocity: Vector,
     /// Length at rest along the ring or crack, up to here [m].
     pub(crate) arc: f64,
+    /// How the wall of a crack came about here.
+    pub(crate) history: History,
+}
+
+impl Carried {
+    /// What the material at rest at `rest` carries that no wall stands on.
+    pub(crate) fn within(rest: Point, velocity: Vector) -> Self {
+        Self { rest, velocity, arc: 0.0, history: History::default() }
+    }
+
+    /// A part of the way, 0 to 1, from here to another point of the same line.
+    pub(crate) fn between(&self, other: &Self, part: f64) -> Self {
+        Self {
+            rest: self.rest + part * (other.rest - self.rest),
+            velocity: self.velocity + part * (other.velocity - self.velocity),
+            arc: self.arc + part * (other.arc - self.arc),
+            history: self.history.between(other.history, part),
+        }
+    }
 }
 
 /// A boundary edge of the moved body, material on its left.
@@ -46,11 +66,6 @@ impl SourceEdge {
         let along = Vector::new((self.b.x - self.a.x) as f64, (self.b.y - self.a.y) as f64);
         let here = Vector::new((point.x - self.a.x) as f64, (point.y - self.a.y) as f64);
         // Intersections are rounded to the grid, so the point may lie beside the edge or just beyond its end.
-        let part = (here.dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
-        Carried {
-            rest: start.rest + part * (end.rest - start.rest),
-            velocity: start.velocity + part * (end.velocity - start.velocity),
-            arc: start.arc + part * (end.arc - start.arc),
-        }
+        start.between(&end, (here.dot(&along) / along.norm_squared()).clamp(0.0, 1.0))
     }
 }

@@ -207,7 +207,7 @@ mod tests {
     }
 
     fn shapes(rings: &[Vec<GridPoint>]) -> Vec<Shape> {
-        let carried = [Carried { rest: Point::origin(), velocity: Vector::zeros(), arc: 0.0 }; 2];
+        let carried = [Carried::within(Point::origin(), Vector::zeros()); 2];
         let edges = rings.iter().flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)));
         let source = |(&a, &b)| SourceEdge { a, b, carried, slot: Slot::Outside };
         material(&edges.map(source).collect::<Vec<_>>())

@@ -6,9 +6,10 @@ mod common;
 use common::{halves, options};
 use fissure_files::Folder;
 use fissure_post::{
-    FileRecord, FrameMeshes, Manifest, PostOptions, Sequences, WriteError, post_frame, write_companions, write_frame,
+    FileRecord, FrameMeshes, History, Manifest, Mesh, PostOptions, Sequences, Slot, WriteError, post_frame,
+    write_companions, write_frame,
 };
-use fissure_scene::{Format, Frame, Part, Scene, UpAxis, Vector};
+use fissure_scene::{Attribute, Cut, Format, Frame, Part, Roughness, Scene, UpAxis, Vector};
 use ply_rs_bw::parser::Parser;
 use ply_rs_bw::ply::{DefaultElement, Property};
 use std::collections::BTreeSet;
@@ -170,6 +171,92 @@ fn texture_coordinates_in_metres_are_as_long_as_the_sides() {
         let places = vertices.map(|v| floats(v, &["x", "y", "z"]).try_into().unwrap());
         assert!(is_as_long(places, vertices.map(|v| floats(v, &["s1", "t1"]).try_into().unwrap())));
     }
+}
+
+/// Truth: closed form. The crack of the sample runs straight on from its mouth at a steady speed under a K_I that rises
+/// with the way; walls say the same at every vertex, however they are cut and shaped, in each format.
+#[test]
+fn crack_walls_tell_how_they_came_about() {
+    let (mut scene, mut frame) = halves(20.0, [(0.0, Vector::zeros()), (0.3, Vector::new(3.0, 0.5))]);
+    frame.time = 0.5;
+    // Points are 2.5 m apart, one per .01 s, with 1 MPa √m more at each.
+    let told = |way: f64| [0.5 - 0.01 * way / 2.5, way, 1e6 * way / 2.5];
+    scene.output.attributes = Attribute::ALL.into();
+    let plain = options(&scene);
+    let roughness = Some(Roughness { amplitude: 0.02, length: 0.5, seed: 1 });
+    let ways = [
+        plain.clone(),
+        PostOptions { cut: Cut::Rest, ..plain.clone() },
+        PostOptions { roughness, ..plain.clone() },
+        PostOptions { bevel: 0.02, ..plain.clone() },
+        PostOptions { parts: vec![Part::Faces], ..plain.clone() },
+    ];
+    for options in ways {
+        let meshes = post_frame(&scene, &frame, &options).unwrap();
+        for mesh in &meshes.parts[0].1 {
+            let walls: BTreeSet<u32> = mesh.slot(Slot::Inside).iter().flatten().copied().collect();
+            for (i, vertex) in (0..).zip(&mesh.vertices) {
+                let History { age, mouth_distance, mode_1 } = vertex.history;
+                let found = [age, mouth_distance, mode_1];
+                let expected = if walls.contains(&i) { told(20.0 * vertex.texture[0]) } else { [0.0; 3] };
+                let is_close = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-9 * (1.0 + b.abs());
+                assert!(found.iter().zip(&expected).all(is_close), "{}: {found:?} {expected:?}", mesh.name);
+            }
+            assert!(walls.len() > 8);
+        }
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let meshes = post_frame(&scene, &frame, &plain).unwrap();
+    let expected: Vec<[f32; 3]> = {
+        let of = |mesh: &Mesh| {
+            let mut seen = BTreeSet::new();
+            let used = mesh.slot(Slot::Inside).iter().flatten().filter(|i| seen.insert(**i)).copied();
+            let number = |i: u32| {
+                let History { age, mouth_distance, mode_1 } = mesh.vertices[i as usize].history;
+                [age, mouth_distance, mode_1].map(|x| x as f32)
+            };
+            used.collect::<Vec<_>>().into_iter().map(number).collect::<Vec<_>>()
+        };
+        meshes.parts[0].1.iter().flat_map(of).collect()
+    };
+    let sample = Sample { scene, frame, meshes };
+    let formats = [Format::Glb, Format::Ply, Format::Usda, Format::Vtk];
+    let records = sample.write(&Folder::new(folder.path()), &formats).unwrap();
+    let (document, buffers, _) = gltf::import(&records[0].path).unwrap();
+    let mut found: Vec<[f32; 3]> = Vec::new();
+    for primitive in document.meshes().flat_map(|mesh| mesh.primitives().collect::<Vec<_>>()) {
+        if let Some(accessor) = primitive.get(&gltf::Semantic::Extras("CRACK".into())) {
+            found.extend(gltf::accessor::Iter::<[f32; 3]>::new(accessor, |b| Some(&buffers[b.index()])).unwrap());
+        }
+    }
+    assert_eq!(found, expected);
+    let bytes = std::fs::read(&records[1].path).unwrap();
+    let ply = Parser::<DefaultElement>::new().read_ply(&mut bytes.as_slice()).unwrap();
+    let float = |vertex: &DefaultElement, name: &str| if let Property::Float(x) = vertex[name] { x } else { f32::NAN };
+    let names = Attribute::ALL.map(Attribute::name);
+    let [walls, others]: [Vec<&DefaultElement>; 2] =
+        [1.0, 0.0].map(|slot| ply.payload["vertex"].iter().filter(|v| float(v, "slot") == slot).collect());
+    let found: Vec<[f32; 3]> = walls.iter().map(|v| names.map(|name| float(v, name))).collect();
+    assert_eq!(found, expected);
+    assert!(others.iter().all(|v| names.map(|name| float(v, name)) == [0.0; 3]));
+    for record in &records[2..] {
+        let text = String::from_utf8_lossy(&std::fs::read(&record.path).unwrap()).into_owned();
+        assert!(names.iter().all(|name| text.contains(name)), "{}", record.file);
+    }
+}
+
+/// Truth: what is asked for, and what is known.
+#[test]
+fn attributes_are_there_where_they_are_asked_for_and_known() {
+    let (scene, mut frame) = halves(20.0, [(0.0, Vector::zeros()), (0.3, Vector::new(3.0, 0.5))]);
+    let asked = PostOptions { attributes: vec![Attribute::Mode1, Attribute::Mode1], ..options(&scene) };
+    let of = |frame: &Frame, options: &PostOptions| {
+        post_frame(&scene, frame, options).unwrap().parts[0].1[0].attributes.clone()
+    };
+    assert_eq!(of(&frame, &options(&scene)), []);
+    assert_eq!(of(&frame, &asked), [Attribute::Mode1]);
+    frame.cracks[0].formed = None;
+    assert_eq!(of(&frame, &asked), []);
 }
 
 #[test]

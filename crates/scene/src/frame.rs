@@ -98,10 +98,21 @@ pub struct CrackFrame {
     pub above_velocity: Vec<Vector>,
     /// Velocity of the face below [m/s].
     pub below_velocity: Vec<Vector>,
+    /// How each point came about; none in takes of older versions.
+    pub formed: Option<Vec<Formed>>,
     /// What the first point is.
     pub start: CrackEnd,
     /// What the last point is.
     pub end: CrackEnd,
+}
+
+/// How a point of a crack came about.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Formed {
+    /// When the tip reached it, since the start of the simulation [s]; 0 where the crack was drawn.
+    pub time: f64,
+    /// K_I as it was measured last before [Pa·√m]; 0 where the crack was drawn, and where nothing was measured.
+    pub mode_1: f64,
 }
 
 /// What the end of a crack is.

@@ -86,7 +86,9 @@ impl Frame {
         }
         for c in &self.cracks {
             let numbers = points([&c.rest, &c.above, &c.below]);
-            finite(FramePart::Crack(c.crack), numbers.chain(vectors([&c.above_velocity, &c.below_velocity])))?;
+            let formed = c.formed.iter().flatten().flat_map(|formed| [&formed.time, &formed.mode_1]);
+            let numbers = numbers.chain(vectors([&c.above_velocity, &c.below_velocity])).chain(formed);
+            finite(FramePart::Crack(c.crack), numbers)?;
         }
         let poses = self.colliders.iter().flat_map(|pose| pose.position.iter().chain([&pose.angle]));
         finite(FramePart::Colliders, poses)
@@ -115,7 +117,8 @@ impl Frame {
         let cracks = self.cracks.iter().map(|c| {
             let faces = [&c.rest, &c.above, &c.below].map(Vec::len);
             let velocities = [&c.above_velocity, &c.below_velocity].map(Vec::len);
-            (FramePart::Crack(c.crack), [&faces[..], &velocities].concat(), c.body)
+            let formed: Vec<usize> = c.formed.iter().map(Vec::len).collect();
+            (FramePart::Crack(c.crack), [&faces[..], &velocities, &formed].concat(), c.body)
         });
         outlines.chain(cracks)
     }

@@ -383,6 +383,37 @@ pub struct OutputSettings {
     /// is; none: where they are.
     #[serde(default)]
     pub explode: Option<Curve>,
+    /// What crack walls tell of how they came about.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub attributes: Vec<Attribute>,
+}
+
+/// What crack walls can tell of how they came about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "load", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Attribute {
+    /// Time since the tip was there [s of simulated time].
+    CrackAge,
+    /// Way along cracks to the mouth that the crack began at [m].
+    MouthDistance,
+    /// K_I at the tip when it was there [Pa·√m].
+    #[serde(rename = "mode_1")]
+    Mode1,
+}
+
+impl Attribute {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::CrackAge, Self::MouthDistance, Self::Mode1];
+
+    /// Its name in scenes and files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::CrackAge => "crack_age",
+            Self::MouthDistance => "mouth_distance",
+            Self::Mode1 => "mode_1",
+        }
+    }
 }
 
 /// Where the material is cut.

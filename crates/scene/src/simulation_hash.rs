@@ -22,14 +22,25 @@ impl Scene {
         }
         scene.frames.last = scene.frames.first;
         scene.frames.playback = PLAYBACK;
-        let output = &mut scene.output;
-        let OutputSettings { thickness, formats, parts, up, smallest_fragment, walls, surfaces, opening, explode } =
-            output;
+        // Each field by its name, so that a new one is thought of here.
+        let OutputSettings {
+            thickness,
+            formats,
+            parts,
+            up,
+            smallest_fragment,
+            walls,
+            surfaces,
+            opening,
+            explode,
+            attributes,
+        } = &mut scene.output;
         (*thickness, *smallest_fragment) = (0.0, 0.0);
         (*up, *walls, *surfaces) = Default::default();
         (*opening, *explode) = (None, None);
         formats.clear();
         parts.clear();
+        attributes.clear();
         let mut hasher = Sha256::new();
         // Plain data with names for keys always serialises; a hash takes every byte.
         let _ = serde_json::to_writer(&mut hasher, &scene);

@@ -74,6 +74,7 @@ pub(crate) fn free_body(region: Region, spacing: f64) -> Scene {
             surfaces: Default::default(),
             opening: None,
             explode: None,
+            attributes: Vec::new(),
         },
     }
 }

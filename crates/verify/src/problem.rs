@@ -94,6 +94,7 @@ impl Problem {
                 surfaces: Default::default(),
                 opening: None,
                 explode: None,
+                attributes: Vec::new(),
             },
         };
         Self { scene }

@@ -2,11 +2,12 @@
 
 use super::FormatError;
 use super::palette::color_and_roughness;
+use crate::history::History;
 use crate::mesh::{Content, Mesh};
 use crate::packed::{Convention, PackedVertex, compact, pack};
 use crate::provenance::Provenance;
 use crate::slot::Slot;
-use fissure_scene::UpAxis;
+use fissure_scene::{Attribute, UpAxis};
 use gltf::binary::{Glb, Header};
 use gltf::json::accessor::{ComponentType, GenericComponentType, Type};
 use gltf::json::buffer::Target;
@@ -140,6 +141,15 @@ impl Document {
             let metres = vertices.iter().map(|v| v.metres(size)).flat_map(|[u, v]| [u, 1.0 - v]);
             let metres = self.floats(metres, vertices.len(), Type::Vec2);
             attributes.insert(Valid(Semantic::TexCoords(1)), metres);
+        }
+        if slot == Slot::Inside && !mesh.attributes.is_empty() {
+            // As wide as the velocity: Blender 5.0 fails in half of its processes on two attributes of different width.
+            let number = |history: &History, attribute: Attribute| {
+                if mesh.attributes.contains(&attribute) { history.number(attribute) } else { 0.0 }
+            };
+            let crack = vertices.iter().flat_map(|v| Attribute::ALL.map(|attribute| number(&v.history, attribute)));
+            let crack = self.floats(crack, vertices.len(), Type::Vec3);
+            attributes.insert(Valid(Semantic::Extras("CRACK".to_owned())), crack);
         }
         let indices = triangles.iter().flatten().map(|i| i.to_le_bytes());
         let target = Some(Target::ElementArrayBuffer);

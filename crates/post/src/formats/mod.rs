@@ -25,7 +25,7 @@ pub use sequence_file::Sequence;
 use crate::mesh::Mesh;
 use crate::packed::Convention;
 use crate::provenance::Provenance;
-use fissure_scene::{Format, Frame, Part, Scene, UpAxis};
+use fissure_scene::{Attribute, Format, Frame, Part, Scene, UpAxis};
 
 /// One part of one frame, to be written.
 #[derive(Debug, Clone, Copy)]
@@ -118,6 +118,11 @@ pub(crate) fn file_format(format: Format) -> &'static dyn FileFormat {
         Format::GlbSequence => &glb_sequence::GltfSequence,
         Format::GlbRigid => &glb_rigid::RigidGltf,
     }
+}
+
+/// Whether any of some objects tells an attribute of its crack walls.
+fn has(objects: &[Mesh], attribute: Attribute) -> bool {
+    objects.iter().any(|mesh| mesh.attributes.contains(&attribute))
 }
 
 /// What the names of all files of a part begin with.

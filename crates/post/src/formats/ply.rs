@@ -1,11 +1,11 @@
 //! Binary little-endian PLY.
 
-use super::{FileFormat, FormatError, Shot};
+use super::{FileFormat, FormatError, Shot, has};
 use crate::mesh::{Content, Mesh};
 use crate::packed::{Convention, PackedVertex, compact, pack};
 use crate::provenance::Provenance;
 use crate::slot::Slot;
-use fissure_scene::Part;
+use fissure_scene::{Attribute, Part};
 use ply_rs_bw::ply::{
     Addable, DefaultElement, ElementDef, Encoding, Header, PropertyDef, PropertyType::List, PropertyType::Scalar,
     ScalarType,
@@ -34,6 +34,8 @@ fn bytes(meshes: &[Mesh], provenance: &Provenance, convention: Convention) -> Re
     let faces = groups.iter().map(|group| group.triangles.len()).sum();
     let mut names = if points_only { POINT_PROPERTIES.to_vec() } else { MESH_PROPERTIES.to_vec() };
     names.extend(METRES.iter().filter(|_| metres));
+    let attributes: Vec<Attribute> = Attribute::ALL.into_iter().filter(|a| has(meshes, *a)).collect();
+    names.extend(attributes.iter().map(|attribute| attribute.name()));
     let mut header = Header::new();
     header.encoding = Encoding::BinaryLittleEndian;
     header.comments = comments(provenance);
@@ -45,7 +47,7 @@ fn bytes(meshes: &[Mesh], provenance: &Provenance, convention: Convention) -> Re
     }
     let mut written = Vec::with_capacity(1024 + 4 * names.len() * vertices + FACE * faces);
     Writer::<DefaultElement>::new().write_header(&mut written, &header)?;
-    groups.iter().for_each(|group| group.add_vertices(points_only, metres, &mut written));
+    groups.iter().for_each(|group| group.add_vertices(points_only, metres, &attributes, &mut written));
     let mut first = 0;
     for group in &groups {
         group.add_faces(first, &mut written);
@@ -116,8 +118,8 @@ fn groups(mesh: &Mesh, convention: Convention) -> Vec<Group<'_>> {
 
 impl Group<'_> {
     /// Adds the bytes of the vertices: without normals, texture coordinates and slots where there are `points_only`,
-    /// with a second set of texture coordinates in `metres`.
-    fn add_vertices(&self, points_only: bool, metres: bool, written: &mut Vec<u8>) {
+    /// with a second set of texture coordinates in `metres`, and `attributes`.
+    fn add_vertices(&self, points_only: bool, metres: bool, attributes: &[Attribute], written: &mut Vec<u8>) {
         let (piece, slot) = (self.mesh.piece as f32, f32::from(self.slot as u8));
         let mut floats =
             |values: &[f32]| values.iter().for_each(|value| written.extend_from_slice(&value.to_le_bytes()));
@@ -135,6 +137,7 @@ impl Group<'_> {
             if metres {
                 floats(&vertex.metres(self.mesh.texture_size.unwrap_or(1.0)));
             }
+            attributes.iter().for_each(|attribute| floats(&[vertex.history.number(*attribute)]));
         }
     }
 

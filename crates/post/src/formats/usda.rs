@@ -11,7 +11,7 @@ use super::{FileFormat, FormatError, Shot, origin_line, sequence_name};
 use crate::mesh::{Content, Mesh};
 use crate::packed::{Convention, PackedVertex, compact, pack};
 use crate::slot::Slot;
-use fissure_scene::{FrameSettings, Part, UpAxis};
+use fissure_scene::{Attribute, FrameSettings, Part, UpAxis};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
@@ -104,6 +104,11 @@ fn object(text: &mut String, mesh: &Mesh, place: Place<'_>, particle_spacing: f6
             let metres = vertices.iter().map(|v| v.metres(size));
             samples(text, "texCoord2f[] primvars:st1", number, |t| join_tuples(t, metres));
         }
+        for &attribute in mesh.attributes.iter().filter(|_| slot == Slot::Inside) {
+            text.push_str(&declared(attribute));
+            let name = format!("float[] primvars:{}", attribute.name());
+            samples(text, &name, number, |t| join(t, vertices.iter().map(|v| v.history.number(attribute)), ", "));
+        }
         motion(text, &vertices, number);
         samples(text, "normal3f[] normals", number, |t| join_tuples(t, vertices.iter().map(|v| v.normal)));
         samples(text, "texCoord2f[] primvars:st", number, |t| join_tuples(t, vertices.iter().map(|v| v.texture)));
@@ -117,6 +122,12 @@ fn object(text: &mut String, mesh: &Mesh, place: Place<'_>, particle_spacing: f6
 /// The second set of texture coordinates, in metres.
 const METRES: &str =
     "            texCoord2f[] primvars:st1 (\n                interpolation = \"vertex\"\n            )\n";
+
+/// An attribute of crack walls without its values.
+fn declared(attribute: Attribute) -> String {
+    let name = attribute.name();
+    format!("            float[] primvars:{name} (\n                interpolation = \"vertex\"\n            )\n")
+}
 
 /// The beginning of the mesh `name` with what does not change from frame to frame.
 fn mesh_opening(text: &mut String, name: &str, slot: Slot, root: &str) {
@@ -192,6 +203,7 @@ mod stage {
     use super::*;
     use crate::formats::Listing;
     use crate::record::ObjectRecord;
+    use fissure_scene::OutputSettings;
     use std::collections::BTreeMap;
 
     /// The stage and the manifest of its clips.
@@ -200,7 +212,7 @@ mod stage {
     pub(super) fn companions(listing: &Listing<'_>) -> Vec<(String, Vec<u8>)> {
         let root = identifier(listing.name);
         let objects = objects(listing);
-        let metres = listing.scene.output.surfaces.uv_in_metres;
+        let output = &listing.scene.output;
         let stage = format!("{}.usda", listing.name);
         let clips = format!("{}.clips.usda", listing.name);
         let frames = listing.records.iter().map(|record| record.frame);
@@ -217,7 +229,7 @@ mod stage {
         text.push_str("]\n            double2[] times = [");
         join_tuples(&mut text, listing.records.iter().map(|record| [record.frame; 2]));
         text.push_str("]\n        }\n    }\n)\n{\n");
-        declare(&mut text, &root, &objects, Declared::InStage, metres);
+        declare(&mut text, &root, &objects, Declared::InStage, output);
         if objects.values().any(|object| !object.materials.is_empty()) {
             materials(&mut text, &root);
         }
@@ -225,7 +237,7 @@ mod stage {
 
         let mut manifest = header(&origin, Some(&root), ends, &listing.scene.frames);
         let _ = writeln!(manifest, "over \"{root}\"\n{{");
-        declare(&mut manifest, &root, &objects, Declared::InManifest, metres);
+        declare(&mut manifest, &root, &objects, Declared::InManifest, output);
         manifest.push_str("}\n");
         vec![(stage, text.into_bytes()), (clips, manifest.into_bytes())]
     }
@@ -257,14 +269,20 @@ mod stage {
         InManifest,
     }
 
-    /// Declares all attributes of all objects that change from frame to frame; `metres`: texture coordinates too.
+    /// Declares all attributes of all objects that change from frame to frame, by `output` also
+    /// those that are not always there.
     fn declare(
         text: &mut String,
         root: &str,
         objects: &BTreeMap<String, ObjectRecord>,
         declared: Declared,
-        metres: bool,
+        output: &OutputSettings,
     ) {
+        let metres = output.surfaces.uv_in_metres;
+        let attributes = |slot: Slot| {
+            let asked = move |attribute: &Attribute| slot == Slot::Inside && output.attributes.contains(attribute);
+            Attribute::ALL.into_iter().filter(asked)
+        };
         let empty = if declared == Declared::InManifest { " = []" } else { "" };
         let specifier = if declared == Declared::InManifest { "over" } else { "def" };
         let moving = ["float3[] extent", "point3f[] points", "vector3f[] velocities"];
@@ -286,10 +304,14 @@ mod stage {
                 if declared == Declared::InStage {
                     mesh_opening(text, &format!("{name}_{}", slot.name()), slot, root);
                     text.push_str(if metres { METRES } else { "" });
+                    attributes(slot).for_each(|attribute| text.push_str(&super::declared(attribute)));
                 } else {
                     let _ = writeln!(text, "        over \"{name}_{}\"\n        {{", slot.name());
                     text.push_str("            normal3f[] normals = []\n            texCoord2f[] primvars:st = []\n");
                     text.push_str(if metres { "            texCoord2f[] primvars:st1 = []\n" } else { "" });
+                    for attribute in attributes(slot) {
+                        let _ = writeln!(text, "            float[] primvars:{} = []", attribute.name());
+                    }
                 }
                 for attribute in moving.iter().chain(&["int[] faceVertexCounts", "int[] faceVertexIndices"]) {
                     let _ = writeln!(text, "            {attribute}{empty}");

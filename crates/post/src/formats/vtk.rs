@@ -3,11 +3,11 @@
 //! Arrays are appended as they are (`encoding="raw"`), each behind its length: exact, and nothing to decode.
 
 use super::numbers::xml_comment;
-use super::{FileFormat, FormatError, Shot, origin_line};
+use super::{FileFormat, FormatError, Shot, has, origin_line};
 use crate::mesh::Mesh;
 use crate::packed::{Convention, compact};
 use crate::slot::Slot;
-use fissure_scene::{Matrix, Part, Point, UpAxis, Vector};
+use fissure_scene::{Attribute, Matrix, Part, Point, UpAxis, Vector};
 use std::fmt::Write;
 
 /// VTK's XML files.
@@ -176,6 +176,9 @@ fn surfaces(shot: &Shot<'_>) -> Vec<u8> {
         d.array("normal", VECTOR, vertices.iter().map(|v| v.normal));
         d.array("texture", ["s", "t"], vertices.iter().map(|v| v.texture));
         d.array("velocity", VECTOR, vertices.iter().map(|v| v.velocity));
+        for attribute in Attribute::ALL.into_iter().filter(|attribute| has(shot.objects, *attribute)) {
+            d.array(attribute.name(), SCALAR, vertices.iter().map(|v| [v.history.number(attribute)]));
+        }
     });
     document.group("CellData Scalars=\"piece\"", |d| {
         d.array("piece", SCALAR, cells.iter().map(|cell| [cell.0]));

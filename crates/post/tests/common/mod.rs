@@ -5,9 +5,9 @@ pub mod cracked_square;
 
 use fissure_post::PostOptions;
 use fissure_scene::{
-    Body, CrackEnd, CrackFrame, Curve, Formulation, Frame, FrameSettings, GrowthSettings, JMethod, Kernel, Material,
-    ModeSplit, OnDistortion, OutlineFrame, OutputSettings, Part, ParticleFrame, PlaneState, Point, Region, Scene,
-    SolverSettings, SurfaceSettings, TipDivision, Transfer, UpAxis, Vector,
+    Body, CrackEnd, CrackFrame, Curve, Formed, Formulation, Frame, FrameSettings, GrowthSettings, JMethod, Kernel,
+    Material, ModeSplit, OnDistortion, OutlineFrame, OutputSettings, Part, ParticleFrame, PlaneState, Point, Region,
+    Scene, SolverSettings, SurfaceSettings, TipDivision, Transfer, UpAxis, Vector,
 };
 
 /// A scene with one body.
@@ -78,6 +78,7 @@ pub fn scene(region: Region) -> Scene {
             surfaces: SurfaceSettings { smoothing: 0.0, ..Default::default() },
             opening: None,
             explode: None,
+            attributes: Vec::new(),
         },
     }
 }
@@ -131,6 +132,7 @@ pub fn frame(region: &Region, per_side: usize, cracks: &[Opened]) -> Frame {
         below: c.face(&c.below),
         above_velocity: c.above.clone(),
         below_velocity: c.below.clone(),
+        formed: Some((0..c.rest.len()).map(|k| Formed { time: 0.01 * k as f64, mode_1: 1e6 * k as f64 }).collect()),
         start: c.start,
         end: c.end,
     });

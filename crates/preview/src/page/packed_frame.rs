@@ -110,7 +110,7 @@ fn pad(bytes: &mut Vec<u8>) {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use fissure_post::{Content, Vertex};
+    use fissure_post::{Content, History, Vertex};
     use flate2::read::DeflateDecoder;
     use std::io::Read;
 
@@ -124,6 +124,7 @@ mod tests {
                 normal: [angle.cos(), angle.sin(), 0.0],
                 texture: [0.0; 2],
                 velocity: [0.0; 3],
+                history: History::default(),
             }
         };
         let triangle = |i: u32| [(i * 7) % 50, (i * 13 + 1) % 50, (i * 29 + 2) % 50];
@@ -132,6 +133,7 @@ mod tests {
             piece: 7,
             content: Content::Surface,
             texture_size: None,
+            attributes: Vec::new(),
             vertices: (0..50).map(vertex).collect(),
             triangles: [(0..40).map(triangle).collect(), (40..60).map(triangle).collect()],
         }

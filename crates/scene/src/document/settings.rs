@@ -248,6 +248,9 @@ pub struct OutputKeys {
     pub bevel: f64,
     /// Whether meshes have a second set of texture coordinates, in metres at rest, in GLB, PLY and USD. Default: false.
     pub uv_in_metres: bool,
+    /// What crack walls tell of how they came about, in GLB, PLY, USD and VTK: `crack_age`, `mouth_distance`, `mode_1`.
+    /// Default: nothing.
+    pub attributes: Vec<Attribute>,
     /// How wide cracks are shown. Default: as they are.
     pub opening: Option<OpeningKeys>,
     /// How far fragments are shown apart. Default: where they are.
@@ -318,6 +321,7 @@ impl Default for OutputKeys {
             roughness: None,
             bevel: 0.0,
             uv_in_metres: false,
+            attributes: Vec::new(),
             opening: None,
             explode: None,
         }

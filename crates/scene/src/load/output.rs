@@ -48,7 +48,8 @@ pub fn with_output(scene: &Scene, overrides: &[String]) -> Result<Scene, LoadErr
 
 /// The keys that give `output`.
 fn keys(output: &OutputSettings, frames: &FrameSettings) -> OutputKeys {
-    let OutputSettings { thickness, formats, parts, up, smallest_fragment, walls, surfaces, opening, explode } = output;
+    let OutputSettings { thickness, formats, parts, up, smallest_fragment, walls, .. } = output;
+    let OutputSettings { surfaces, opening, explode, attributes, .. } = output;
     let SurfaceSettings { cap_size, cut, smoothing, roughness, bevel, uv_in_metres } = *surfaces;
     let opening = opening.as_ref().map(|opening| {
         let (factor, keyframes) = schedule(&opening.factor, frames);
@@ -76,6 +77,7 @@ fn keys(output: &OutputSettings, frames: &FrameSettings) -> OutputKeys {
         roughness,
         bevel,
         uv_in_metres,
+        attributes: attributes.clone(),
         opening,
         explode,
     }

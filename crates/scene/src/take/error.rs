@@ -22,7 +22,7 @@ pub enum TakeError {
     },
     /// The take is of a version that this program does not read, or does not go on with.
     #[error(
-        "`{}` is a take of version {found}, this program reads the versions {} and {} and goes on with {}",
+        "`{}` is a take of version {found}, this program reads the versions {} to {} and goes on with {}",
         path.display(),
         Manifest::OLDEST,
         Manifest::VERSION,

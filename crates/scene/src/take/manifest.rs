@@ -46,9 +46,11 @@ impl Manifest {
     /// Name of the format.
     pub const FORMAT: &str = "fissure-take";
     /// Version of the format that this program writes.
-    pub const VERSION: u64 = 4;
+    pub const VERSION: u64 = 5;
     /// The oldest version that it reads: there each frame says itself what its particles are at rest.
     pub const OLDEST: u64 = 3;
+    /// The first version in which cracks say how they came about.
+    pub(super) const HISTORY: u64 = 5;
 
     pub(super) fn new(scene: &Scene, provenance: Provenance) -> Self {
         Self {

@@ -49,6 +49,11 @@ impl Take {
         &self.manifest
     }
 
+    /// Whether it says how cracks formed: takes of older versions do not.
+    pub fn tells_how_cracks_formed(&self) -> bool {
+        self.manifest.version >= Manifest::HISTORY
+    }
+
     /// The frames there are, by rising number.
     pub fn frames(&self) -> &[FrameEntry] {
         &self.entries

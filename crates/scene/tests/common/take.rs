@@ -59,6 +59,7 @@ pub fn frame(number: i64) -> Frame {
             below: points(3),
             above_velocity: vectors(points(3)),
             below_velocity: vectors(points(3)),
+            formed: Some((0..3).map(|k| Formed { time: 1e-3 * f64::from(k), mode_1: 0.1 * f64::from(k) }).collect()),
             start: CrackEnd::Mouth,
             end: CrackEnd::Junction { crack: 4 },
         }],

@@ -268,6 +268,11 @@ impl Cracks {
         self.0.len() - 1
     }
 
+    /// Says of all that tips have reached since this was called last that it came about at `time` [s].
+    pub(crate) fn date(&mut self, time: f64) {
+        self.0.iter_mut().for_each(|crack| crack.date(time));
+    }
+
     /// Makes the end something else.
     pub(crate) fn set_end(&mut self, id: TipId, end: CrackEnd) {
         self.0[id.crack].set_end(id.end, end);

@@ -16,7 +16,7 @@ use crate::crack::guide::GuideWalk;
 use crate::crack::tip::Tip;
 use crate::saved::{self, Fits};
 use fissure_plane::{Point, Vector, bounds, polyline_length};
-use fissure_scene::{CrackEnd, End, Scene, TipRecord};
+use fissure_scene::{CrackEnd, End, Formed, Scene, TipRecord};
 use serde::{Deserialize, Serialize};
 
 /// A crack. All positions are at rest; a solver knows where they are now.
@@ -26,6 +26,8 @@ pub(crate) struct Crack {
     pub(crate) body: u32,
     /// Points from start to end [m].
     pub(crate) points: Vec<Point>,
+    /// How each point came about; none for those that were reached since cracks were dated last.
+    formed: Vec<Option<Formed>>,
     /// What the first and the last point are.
     ends: [CrackEnd; 2],
     /// How each end is on its way.
@@ -130,6 +132,7 @@ impl Crack {
         Self {
             body: crack.body as u32,
             bounds: bounds(&points).into(),
+            formed: vec![Some(Formed::default()); points.len()],
             points,
             ends,
             ways: [Way::default(); 2],
@@ -142,8 +145,8 @@ impl Crack {
     pub(crate) fn branch(&self, number: usize, points: Vec<Point>, tip: Tip) -> Self {
         let ends = [CrackEnd::Junction { crack: number as u32 }, CrackEnd::Tip];
         let (body, crosses) = (self.body, self.crosses);
-        let bounds = bounds(&points).into();
-        Self { body, points, ends, ways: [Way::default(); 2], tips: [None, Some(tip)], crosses, bounds }
+        let (bounds, formed) = (bounds(&points).into(), vec![None; points.len()]);
+        Self { body, points, formed, ends, ways: [Way::default(); 2], tips: [None, Some(tip)], crosses, bounds }
     }
 
     /// The tip at an end; none where the drawing has no live tip.
@@ -187,6 +190,8 @@ impl Crack {
         let is_held = |p: &Point| *p >= self.bounds[0] && *p <= self.bounds[1];
         let fits = |p: &Point| is_inside(p) && is_held(p);
         saved::ensure(has_length && self.points.iter().all(fits), "the line of a crack")?;
+        saved::ensure(self.formed.len() == self.points.len(), "the age of a crack")?;
+        saved::finite("the age of a crack", self.formed.iter().flatten().flat_map(|f| [&f.time, &f.mode_1]))?;
         let trunk = |end: &CrackEnd| if let CrackEnd::Junction { crack } = end { Some(*crack) } else { None };
         saved::below("the end of a crack", self.ends.iter().filter_map(trunk), count)?;
         let mut places = self.ways.iter().flat_map(|way| way.cut_at.iter().chain(&way.target));
@@ -241,10 +246,9 @@ impl Crack {
 
     /// Adds a point at an end, for which lines will be cut.
     fn push(&mut self, end: End, point: Point) {
-        match end {
-            End::Start => self.points.insert(0, point),
-            End::End => self.points.push(point),
-        }
+        let at = if end == End::Start { 0 } else { self.points.len() };
+        self.points.insert(at, point);
+        self.formed.insert(at, None);
         self.ways[slot(end)].cut_at = Some(point);
         self.reach_to(point);
     }
@@ -271,7 +275,9 @@ impl Crack {
         let Some(target) = self.ways[slot(end)].target else { return };
         let (from, last) = (self.tip_position(end), self.points.len() - 1);
         let left = (target - from).norm();
-        let place = &mut self.points[if end == End::Start { 0 } else { last }];
+        let at = if end == End::Start { 0 } else { last };
+        self.formed[at] = None;
+        let place = &mut self.points[at];
         if distance >= left {
             *place = target;
             self.ways[slot(end)].target = None;
@@ -280,6 +286,28 @@ impl Crack {
         }
         let place = *place;
         self.reach_to(place);
+    }
+
+    /// Says of the points that its tips have reached since this was called last that they came about at `time` [s], by
+    /// the K_I that was measured last.
+    pub(crate) fn date(&mut self, time: f64) {
+        let count = self.points.len();
+        for (tip, end) in self.tips.iter().zip(ENDS) {
+            let Some(tip) = tip else { continue };
+            let mode_1 = Some(tip.assessment.mode_1).filter(|mode_1| mode_1.is_finite()).unwrap_or_default();
+            let at = |k: usize| if end == End::Start { k } else { count - 1 - k };
+            for k in (0..count).map(at) {
+                if self.formed[k].is_some() {
+                    break;
+                }
+                self.formed[k] = Some(Formed { time, mode_1 });
+            }
+        }
+    }
+
+    /// How each of its points came about.
+    pub(crate) fn formed(&self) -> Vec<Formed> {
+        self.formed.iter().map(|formed| formed.unwrap_or_default()).collect()
     }
 
     /// Length at rest [m].

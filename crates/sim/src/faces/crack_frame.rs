@@ -30,6 +30,7 @@ pub(crate) fn crack_frame(
         below,
         above_velocity,
         below_velocity,
+        formed: Some(crack.formed()),
         start: crack.end(End::Start),
         end: crack.end(End::End),
     }

@@ -116,6 +116,7 @@ impl Simulation {
         let tips = live.iter().zip(assessed).map(|(&id, assessed)| self.ready(id, assessed, time, time_step)).collect();
         self.grow(tips, time);
         self.branch_off(time);
+        self.state.cracks.date(time);
         self.stages.enter(Stage::Between);
         Ok(())
     }

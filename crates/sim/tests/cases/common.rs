@@ -69,6 +69,7 @@ pub(crate) fn plate(size: [f64; 2], cell_size: f64, frame_time: f64) -> Scene {
             surfaces: Default::default(),
             opening: None,
             explode: None,
+            attributes: Vec::new(),
         },
     }
 }

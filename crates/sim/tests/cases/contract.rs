@@ -2,7 +2,7 @@
 
 use crate::common::{YOUNG, add_crack, add_traction, hold, plate, pull, rectangle, run, set_velocity, updated};
 use fissure_scene::{
-    BoxSide, Collider, ColliderShape, Contact, Frame, Load, LoadKind, Point, Pose, Scene, Selection, Vector,
+    BoxSide, Collider, ColliderShape, Contact, Formed, Frame, Load, LoadKind, Point, Pose, Scene, Selection, Vector,
 };
 use fissure_sim::Simulation;
 
@@ -43,6 +43,7 @@ contract!(
     energy_is_kept,
     work_is_energy,
     patch_test,
+    walls_know_how_they_formed,
     a_saved_state_goes_on_as_if_nothing_had_been,
     two_threads_give_the_bytes_of_one,
 );
@@ -189,6 +190,37 @@ fn busy_plate() -> Scene {
         friction: 0.2,
     });
     scene
+}
+
+/// Truth: the frames, one for each step. What a crack has got in a step formed at the end of it, by the K_I of its tip
+/// as a frame tells it; the rest keeps what it said before, and what was drawn says nothing.
+fn walls_know_how_they_formed(formulation: &Formulation) {
+    let mut scene = (formulation.of)(plate([1.6, 1.0], 0.1, 2e-5));
+    scene.frames.last = 400;
+    add_crack(&mut scene, &[[0.0, 0.53], [0.41, 0.51], [0.83, 0.61]]);
+    pull(&mut scene, 1e6);
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let mut before = simulation.frame();
+    assert!(before.cracks[0].formed.as_ref().unwrap().iter().all(|formed| *formed == Formed::default()));
+    let mut grown = 0;
+    for _ in 0..scene.frames.last {
+        let frame = run(&mut simulation, 1).unwrap();
+        assert_eq!(simulation.steps(), frame.number as u64);
+        let [old, new] = [&before, &frame].map(|frame| &frame.cracks[0]);
+        let [old_formed, formed] = [old, new].map(|crack| crack.formed.as_ref().unwrap());
+        for (k, place) in new.rest.iter().enumerate() {
+            if old.rest.get(k) == Some(place) {
+                assert_eq!(formed[k], old_formed[k], "{} {k}", frame.number);
+            } else {
+                // The time of a frame is its number over their rate, that of a step the sum of all steps.
+                assert!((formed[k].time - frame.time).abs() < 1e-12, "{} {k}: {:?}", frame.number, formed[k]);
+                assert_eq!(formed[k].mode_1, frame.tips[0].mode_1, "{} {k}", frame.number);
+                grown += 1;
+            }
+        }
+        before = frame;
+    }
+    assert!(grown > 10 && before.cracks[0].formed.as_ref().unwrap().iter().any(|f| f.mode_1 > 1e4), "{grown}");
 }
 
 /// Truth: the run that was not interrupted, byte for byte. Half a state is refused.

@@ -122,6 +122,7 @@ impl<'d> Resolver<'d> {
             },
             opening: keys.opening.as_ref().map(|keys| opening(keys, frames, cell_size)).transpose()?,
             explode: keys.explode.as_ref().map(|keys| explode(keys, frames)).transpose()?,
+            attributes: keys.attributes.clone(),
         })
     }
 }

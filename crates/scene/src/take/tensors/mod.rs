@@ -17,6 +17,7 @@
 //! | `cracks.crack`, `.body`; `.offset` | as for outlines | |
 //! | `cracks.ends` | [k, 2] i64 | start and end: -1 tip, -2 mouth, else the crack it ends on |
 //! | `cracks.rest`, `.above`, `.below`, `.above_velocity`, `.below_velocity` | [m, 2] f64 | |
+//! | `cracks.formed_time`, `.formed_mode_1` | \[m\] f64 | s, Pa·√m; not in versions before 5 |
 //! | `tips.crack`, `.end`, `.state` | \[t\] u32 | end: 0 start, 1 end; state: order of [`TipState`] |
 //! | `tips.position`, and the other fields of [`TipRecord`] | [t, 2], \[t\] f64 | |
 //! | `tips.radius_shrunk` | \[t\] u8 | 0 or 1 |

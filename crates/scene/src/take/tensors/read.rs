@@ -165,6 +165,7 @@ impl<'d> Reader<'d> {
         let below = same_length("crack", self.points("cracks.below")?, rest.len())?;
         let above_velocity = same_length("crack", self.vectors("cracks.above_velocity")?, rest.len())?;
         let below_velocity = same_length("crack", self.vectors("cracks.below_velocity")?, rest.len())?;
+        let formed = self.formed(rest.len())?;
         let ranges = self.ranges("cracks.offset", rest.len())?;
         let crack = same_length("crack", self.u32s("cracks.crack")?, ranges.len())?;
         let body = same_length("crack", self.u32s("cracks.body")?, ranges.len())?;
@@ -178,12 +179,23 @@ impl<'d> Reader<'d> {
                 above: above[r.clone()].to_vec(),
                 below: below[r.clone()].to_vec(),
                 above_velocity: above_velocity[r.clone()].to_vec(),
-                below_velocity: below_velocity[r].to_vec(),
+                below_velocity: below_velocity[r.clone()].to_vec(),
+                formed: formed.as_ref().map(|formed| formed[r].to_vec()),
                 start: end_from_number(ends[i][0])?,
                 end: end_from_number(ends[i][1])?,
             })
         };
         ranges.into_iter().enumerate().map(one).collect()
+    }
+
+    /// How the points of all cracks, so many, came about; none where the frame does not say.
+    fn formed(&self, points: usize) -> Result<Option<Vec<Formed>>, FrameFileError> {
+        if !self.has("cracks.formed_time") {
+            return Ok(None);
+        }
+        let times = same_length("crack", self.f64s("cracks.formed_time")?, points)?;
+        let modes = same_length("crack", self.f64s("cracks.formed_mode_1")?, points)?;
+        Ok(Some(times.into_iter().zip(modes).map(|(time, mode_1)| Formed { time, mode_1 }).collect()))
     }
 
     fn tips(&self) -> Result<Vec<TipRecord>, FrameFileError> {

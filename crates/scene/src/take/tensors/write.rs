@@ -138,6 +138,12 @@ pub fn frame_to_bytes(
     t.points("cracks.below", c.iter().flat_map(|k| &k.below));
     t.vectors("cracks.above_velocity", c.iter().flat_map(|k| &k.above_velocity));
     t.vectors("cracks.below_velocity", c.iter().flat_map(|k| &k.below_velocity));
+    // Those of all cracks or of none: a frame is of one version.
+    if let Some(formed) = c.iter().map(|k| k.formed.as_deref()).collect::<Option<Vec<_>>>() {
+        let formed = formed.concat();
+        t.numbers("cracks.formed_time", formed.iter().map(|formed| formed.time));
+        t.numbers("cracks.formed_mode_1", formed.iter().map(|formed| formed.mode_1));
+    }
 
     let tips = &frame.tips;
     t.u32s("tips.crack", tips.iter().map(|tip| tip.crack));
