@@ -27,7 +27,7 @@ pub(crate) fn sheet() -> String {
          .m{{fill:#59636e}}.b{{fill:#ffffff}}.g{{stroke:#e4e7eb;stroke-width:1}}\
          .k{{stroke:#59636e;stroke-width:1;fill:none}}\
          .p{{stroke:#8c959f;stroke-width:5;fill:none;opacity:.35;stroke-linejoin:round}}\
-         .l{{fill:none;stroke-width:1.6;stroke-linejoin:round}}.t{{fill:none;stroke-width:.9;stroke-linejoin:round}}.n{{fill:#8c959f}}.c{{fill:#14181d}}{}{steps}\
+         .l{{fill:none;stroke-width:1.6;stroke-linejoin:round}}.t{{fill:none;stroke-width:9;stroke-linejoin:round}}.n{{fill:#8c959f}}.c{{fill:#14181d}}{}{steps}\
          @media (prefers-color-scheme:dark){{text{{fill:#e6edf3}}.m{{fill:#9198a1}}.b{{fill:#0d1117}}.g{{stroke:#2a3038}}\
          .k{{stroke:#9198a1}}.p{{stroke:#9198a1}}.c{{fill:#14181d}}{}}}",
         colours(&LIGHT),

@@ -26,6 +26,9 @@ impl Anchor {
     }
 }
 
+/// The unit of [`Svg::paths`] [px].
+const TENTH: f64 = 0.1;
+
 impl Svg {
     fn add(&mut self, element: std::fmt::Arguments<'_>) {
         // Writing to a string cannot fail.
@@ -45,6 +48,34 @@ impl Svg {
         let places: Vec<String> = points.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
         let dashes = if dashes.is_empty() { String::new() } else { format!(r#" stroke-dasharray="{dashes}""#) };
         self.add(format_args!(r#"<polyline class="{class}" points="{}"{dashes}/>"#, places.join(" ")));
+    }
+
+    /// Many lines as one element, in as few bytes as can be: whole tenths of a pixel, each point from the one before.
+    pub(crate) fn paths(&mut self, class: &str, lines: &[Vec<(f64, f64)>]) {
+        let whole = |&(x, y): &(f64, f64)| ((x / TENTH).round() as i64, (y / TENTH).round() as i64);
+        let mut path = String::new();
+        for line in lines {
+            let Some(mut last) = line.first().map(whole) else { continue };
+            // Writing to a string cannot fail.
+            let _ = write!(path, "M{} {}", last.0, last.1);
+            let mut before = 'l';
+            for next in line[1..].iter().map(whole) {
+                for step in [next.0 - last.0, next.1 - last.1] {
+                    // A sign parts numbers as well as a space does.
+                    let gap = if before == 'l' {
+                        "l"
+                    } else if step < 0 {
+                        ""
+                    } else {
+                        " "
+                    };
+                    let _ = write!(path, "{gap}{step}");
+                    before = ' ';
+                }
+                last = next;
+            }
+        }
+        self.add(format_args!(r#"<path class="{class}" transform="scale({TENTH})" d="{path}"/>"#));
     }
 
     /// A rectangle from its upper left corner; `title` is shown where a pointer rests on it.

@@ -43,7 +43,7 @@ pub use crossing::find_crossing;
 pub use narrow::{NarrowKind, NarrowPlace, narrow_places};
 pub use outlook::Outlook;
 pub use point::{Matrix, Point, Vector, bounds};
-pub use polyline::polyline_length;
+pub use polyline::{polyline_length, simplified};
 pub use predicate::{is_left_of, orientation, segments_touch};
 pub use region::{Region, RingPlace};
 pub use ring::{circle_ring, clean_ring, oriented, signed_area};

@@ -6,7 +6,7 @@ use super::table::Table;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use fissure_chart::{Figure, Panel, Plot, Stroke};
-use fissure_plane::Point;
+use fissure_plane::{Point, simplified};
 use fissure_scene::{Frame, Scene};
 use fissure_sim::Simulation;
 use fissure_verify::cpu_time;
@@ -20,6 +20,9 @@ const EXAMPLE: &str = "glass-impact";
 /// Factors on its spacing.
 const COARSER: [f64; 4] = [4.0, 2.0, std::f64::consts::SQRT_2, 1.0];
 const COARSER_QUICK: [f64; 4] = [4.0, 2.8, 2.0, std::f64::consts::SQRT_2];
+/// Places this near to the line without them are left out [thousandths of the size of the bodies]: a tenth of a pixel,
+/// as four panels share the width of a page.
+const UNSEEN: f64 = 0.5;
 
 /// Runs what is missing and draws.
 pub(super) fn chart(charting: &Charting<'_>, folder: &Path) -> Result<(), Failure> {
@@ -66,14 +69,15 @@ pub(super) fn chart(charting: &Charting<'_>, folder: &Path) -> Result<(), Failur
     charting.draw(NAME, &figure(charting, &table, &factors))
 }
 
-/// All lines of a frame as words: outlines as `o`, cracks as `c`, each with places in thousandths of the size of the
-/// bodies at rest.
+/// All lines of a frame as words: outlines as `o`, cracks as `c`, each with places in whole thousandths of the size of
+/// the bodies at rest, without those that nobody sees.
 fn shape(scene: &Scene, frame: &Frame) -> String {
     let corners: Vec<Point> = scene.bodies.iter().flat_map(|body| body.region.exterior.iter().copied()).collect();
     let (low, high) = fissure_plane::bounds(&corners);
     let unit = 1000.0 / (high - low).amax();
     let line = |kind: char, points: &mut dyn Iterator<Item = &Point>| {
-        let places = points.map(|p| format!("{:.1} {:.1}", unit * (p.x - low.x), unit * (p.y - low.y)));
+        let line: Vec<Point> = points.map(|p| Point::from((p - low) * unit)).collect();
+        let places = simplified(&line, UNSEEN).into_iter().map(|p| format!("{:.0} {:.0}", p.x, p.y));
         format!("{kind} {}", places.collect::<Vec<_>>().join(" "))
     };
     let outlines = frame.outlines.iter().map(|o| line('o', &mut o.position.iter().chain(o.position.first())));
