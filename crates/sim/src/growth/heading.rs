@@ -1,5 +1,6 @@
 //! Where a tip wants to go: by the stress, by a drawn path, or by both.
 
+use super::seeking::{is_varied, seek};
 use crate::crack::assessment::Assessment;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::{DIRECTION_LENGTH, KINK};
@@ -22,7 +23,9 @@ fn asked(cracks: &Cracks, id: TipId, assessed: &Assessment, scene: &Scene) -> Ve
 ///
 /// Every increment sends out waves, and the ratio of the modes swings with them at a period that is the lattice's, not
 /// the body's. A running tip follows the mean over the time that a shear wave takes for a few cells; a resting one has
-/// no waves of its own and starts as the stress is. Both go straight on from a kink that they have made themselves.
+/// no waves of its own and starts as the stress is. Both go straight on from a kink that they have made themselves;
+/// where toughness varies, they remember what the stress asked for before it, because it may have been made to avoid
+/// what is tough: judged anew from every kink, many small turns would cost next to nothing.
 pub(crate) fn heading(
     cracks: &Cracks,
     id: TipId,
@@ -40,7 +43,7 @@ pub(crate) fn heading(
         return cracks.last_direction(id);
     }
     if let Some(direction) = after_kink(cracks, id, DIRECTION_LENGTH * scene.cell_size, tip.grown) {
-        return direction;
+        return if is_varied(cracks.of(id), scene) { tip.heading } else { direction };
     }
     if tip.state != TipState::Growing {
         return now;
@@ -86,7 +89,7 @@ pub(super) fn physical_way(cracks: &Cracks, id: TipId, assessed: &Assessment, sc
 /// The direction a tip takes (unit vector, at rest): its heading, turned to what is weak, then towards its guide by the
 /// strength of the guide.
 pub(super) fn way(cracks: &Cracks, id: TipId, assessed: &Assessment, scene: &Scene) -> Vector {
-    let physical = super::seeking::seek(cracks, id, physical_way(cracks, id, assessed, scene), scene);
+    let physical = seek(cracks, id, physical_way(cracks, id, assessed, scene), scene);
     let Some(guide) = cracks.tip(id).and_then(|t| t.guide.as_ref()) else { return physical };
     match guide.drawn_direction(cracks.position(id), DIRECTION_LENGTH * scene.cell_size) {
         Some(drawn) => turned(physical, guide.strength() * physical.perp(&drawn).atan2(physical.dot(&drawn))),

@@ -8,12 +8,17 @@ use crate::tip::frame::turned;
 use fissure_scene::{Point, Scene, Vector};
 
 /// Directions are looked at up to this many steps to either side of the one the stress asks for ...
-const STEPS: i32 = 12;
+const STEPS: i32 = 24;
 /// ... each of this size [rad]: 5 degrees.
 const STEP: f64 = 0.087_266_462_599_716_47;
+/// Cosine of the largest turn from the last segment of a crack: 120 degrees. Beyond it lies, within a cell, what the
+/// crack has just come from.
+const LARGEST_TURN_COSINE: f64 = -0.5;
 /// A direction is judged by the mean toughness over this length, in cells: two particle spacings, of which painted
 /// toughness knows one.
 const REACH: f64 = 1.0;
+/// What is better by less than this part is not better.
+const ROUND_OFF: f64 = 1e-9;
 
 /// Whether the toughness of the body of a crack is not the same everywhere.
 pub(super) fn is_varied(crack: &Crack, scene: &Scene) -> bool {
@@ -27,7 +32,8 @@ pub(super) fn toughness_at(crack: &Crack, place: Point, scene: &Scene) -> f64 {
 }
 
 /// The direction (unit vector, at rest) with the highest ratio of hoop stress to toughness, for a tip that the stress
-/// opens along `physical`.
+/// opens along `physical`: the one in which growth begins first, as it begins where K_eq reaches the toughness. By the
+/// energy that kinks release, the square of cos²(δ/2) for small ones, tips would turn a little farther.
 ///
 /// Of equal ratios the one nearest to `physical` is taken, so that a toughness that is the same all around changes
 /// nothing.
@@ -39,18 +45,30 @@ pub(super) fn seek(cracks: &Cracks, id: TipId, physical: Vector, scene: &Scene) 
     let from = cracks.position(id);
     let criterion = criterion();
     let ratio = |angle: f64| {
-        let along = turned(physical, angle) * (REACH * scene.cell_size);
-        let toughness = toughness_at(crack, from + 0.5 * along, scene) + toughness_at(crack, from + along, scene);
-        criterion.share_beside(angle) / toughness
+        let along = turned(physical, angle);
+        let toughness = |way: f64| toughness_at(crack, from + along * (way * scene.cell_size), scene);
+        let ahead = 0.5 * (toughness(0.5 * REACH) + toughness(REACH));
+        // No less than what the next increment has to break: at the edge of a tough place that curves away a tip would
+        // go where it cannot begin.
+        criterion.share_beside(angle) / ahead.max(toughness(0.5 * scene.growth.increment))
     };
+    let last = cracks.last_direction(id);
+    let is_open = |angle: f64| turned(physical, angle).dot(&last) >= LARGEST_TURN_COSINE;
+    let angles = (1..=STEPS).map(|step| f64::from(step) * STEP);
+    let sides =
+        angles.map(|angle| [angle, -angle].map(|angle| (if is_open(angle) { ratio(angle) } else { 0.0 }, angle)));
+    let mut sides: Vec<[(f64, f64); 2]> = sides.collect();
+    // Where a turn to the left has as much as one to the right, all others of the side decide, and then the stress:
+    // mirrored scenes crack alike.
+    let (left, right) = sides.iter().fold((0.0, 0.0), |sum, pair| (sum.0 + pair[0].0, sum.1 + pair[1].0));
+    let is_even = (left - right).abs() <= ROUND_OFF * (left + right);
+    if if is_even { last.perp(&physical) < 0.0 } else { left < right } {
+        sides.iter_mut().for_each(|pair| pair.swap(0, 1));
+    }
     let mut best = (ratio(0.0), 0.0);
-    for step in 1..=STEPS {
-        for angle in [f64::from(step) * STEP, f64::from(-step) * STEP] {
-            let found = ratio(angle);
-            // Better by more than round-off: mirrored scenes crack alike.
-            if found > best.0 * (1.0 + 1e-9) {
-                best = (found, angle);
-            }
+    for found in sides.into_iter().flatten() {
+        if found.0 > best.0 * (1.0 + ROUND_OFF) {
+            best = found;
         }
     }
     turned(physical, best.1)

@@ -253,3 +253,29 @@ fn cracks_seek_what_is_weak() {
     let worst = off.map(|p| (p - Point::from(TIP)).perp(&along).abs()).fold(0.0, f64::max);
     assert!(worst < 1.5 * scene.cell_size, "{worst} m off the middle of the band");
 }
+
+/// Truth: symmetry. Before a tough disc in the middle of its way a crack has as much to its left as to its right; it
+/// turns to the right when all is tough farther to the left, and to the left in the mirror image, by the same path.
+#[test]
+fn cracks_pass_tough_places_on_the_freer_side() {
+    let [above, below] = [1.0, -1.0].map(|up| {
+        let mut scene = pulled();
+        let at = |x: f64, y: f64| Point::new(x, 10.0 + up * (y - 10.0));
+        scene.cracks[0].points.iter_mut().for_each(|p| *p = at(p.x, p.y));
+        let disc = (0..32).map(|k| std::f64::consts::TAU * f64::from(k) / 32.0);
+        let disc = disc.map(|angle| at(7.0 + 1.5 * angle.cos(), TIP[1] + 1.5 * angle.sin())).collect();
+        let wall = vec![at(4.6, 10.4), at(9.0, 10.4), at(9.0, 12.0), at(4.6, 12.0)];
+        let tough = |exterior: Vec<Point>| {
+            let region = Region { exterior, holes: Vec::new() };
+            ToughnessPatch { body: None, kind: ToughnessKind::Region { region, factor: 20.0 } }
+        };
+        scene.toughness = vec![tough(disc), tough(wall)];
+        after(&scene, 30).cracks[0].rest.clone()
+    });
+    let lowest = above.iter().filter(|p| p.x < 8.5).map(|p| p.y).fold(f64::INFINITY, f64::min);
+    assert!(above.last().unwrap().x > 8.5, "{:?}", above.last());
+    assert!(lowest < 9.0, "{lowest}");
+    assert_eq!(above.len(), below.len());
+    let worst = above.iter().zip(&below).map(|(a, b)| (a.x - b.x).hypot(a.y + b.y - 20.0)).fold(0.0, f64::max);
+    assert!(worst < 1e-6, "{worst} m apart");
+}

@@ -14,7 +14,7 @@ pub(super) const TOUGHNESS_JUMPS: StabilityMap = StabilityMap {
     name: "toughness-jump",
     title: "Direction of a crack behind an interface, against through or along it, by the angle between both",
     across: Parameter::numbers("K_2/K_1", &[1.0, 1.05, 1.1, 1.2, 1.3, 1.4, 1.6, 2.0, 3.0]),
-    up: Parameter::numbers("angle between crack and interface [°]", &[20.0, 30.0, 40.0, 50.0, 60.0]),
+    up: Parameter::numbers("angle between crack and interface [°]", &[20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0, 90.0]),
     limits: [0.05, 0.1, 0.2, 0.4, 0.6, 0.8],
     run: |jump, degrees| {
         let phi = degrees.to_radians();
@@ -53,10 +53,14 @@ fn turned_by(jump: f64, phi: f64) -> Result<f64, SimulationError> {
         simulation.advance(&mut |_| ControlFlow::Continue(()))?;
         let frame = simulation.frame();
         let path = &frame.cracks[0].rest;
-        let farther = |way: f64| path.iter().find(|&&at| at.x > MEETING.x && (at - MEETING).norm() > way).copied();
+        // From where it is about as far as the interface; it may run along that without touching it.
+        let met = path.iter().position(|&at| (at - MEETING).norm() < BEYOND.0).unwrap_or(path.len());
+        let farther = |way: f64| path[met..].iter().find(|&&at| (at - MEETING).norm() > way).copied();
         if let (Some(from), Some(to)) = (farther(BEYOND.0), farther(BEYOND.1)) {
             let way = to - from;
-            return Ok(way.y.atan2(way.x) / phi);
+            let turned = way.y.atan2(way.x) / phi;
+            // Across an interface at a right angle both ways along it are alike.
+            return Ok(if phi < 1.5 { turned } else { turned.abs() });
         }
     }
     Ok(f64::NAN)
