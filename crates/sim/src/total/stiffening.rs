@@ -129,6 +129,33 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        /// Truth: the singular values of F anywhere in a cell, from the bilinear displacements of its nodes: none is
+        /// above the bound, and where F is the same in all of the cell it is reached.
+        #[test]
+        fn no_place_in_a_cell_is_stretched_more_than_is_said(
+            moved in prop::array::uniform8(-0.5_f64..0.5), at in (0.0_f64..=1.0, 0.0_f64..=1.0), cell_size in 0.1_f64..10.0,
+        ) {
+            // The cell from node 0 to 1 along the lower and from 2 to 3 along the upper edge.
+            let node = |k: usize| Vector::new(moved[2 * k], moved[2 * k + 1]);
+            let bound = |nodes: [Vector; 4]| {
+                let mut u: FieldVectors = [vec![0.0; 4], vec![0.0; 4]];
+                (0..4).for_each(|k| (0..2).for_each(|axis| u[axis][k] = nodes[k][axis] * cell_size));
+                squared_stretch(&u, 0, 2, cell_size)
+            };
+            let largest = |along: Vector, up: Vector| {
+                let f = Matrix::identity() + Matrix::from_columns(&[along, up]);
+                f.singular_values().max().powi(2)
+            };
+            let [a, b, c, d] = [0, 1, 2, 3].map(node);
+            let (along, up) = ((b - a) * (1.0 - at.1) + (d - c) * at.1, (c - a) * (1.0 - at.0) + (d - b) * at.0);
+            let said = bound([a, b, c, d]);
+            prop_assert!(largest(along, up) <= said * (1.0 + 1e-12), "{said}");
+            // The largest is at one of the corners, each of an edge along and one up.
+            let corners = [b - a, d - c].map(|along| [c - a, d - b].map(|up| largest(along, up)));
+            let most = corners.iter().flatten().fold(0.0, |most: f64, s| most.max(*s));
+            prop_assert!((said - most).abs() < 1e-12 * said, "{said} {most}");
+        }
+
         /// Truth: second differences of the strain energy along a⊗N. None is above the bound, and along the smaller
         /// stretch it is reached.
         #[test]
