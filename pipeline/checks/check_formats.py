@@ -13,7 +13,7 @@ FOLDER holds the files of `fissure post OUT/NAME.take --formats glb,obj,usda,vtk
   K_I of each wall lie within those of the take, and distances within its longest way; USD and VTK files say the same as
   the GLB file, to the bit, and VTK nothing on other surfaces.
 - VTK: its own reader reads surfaces with as many triangles as the manifest says, and of its volume within 1e-5 (which
-  the reader sums in single precision); it and meshio read the particles of the take, to the bit; the list names the times.
+  the reader sums in single precision); it and meshio read the particles of the take, to the bit, and their mass in all is density times area times thickness; the list names the times.
 - OBJ: trimesh reads each object, of the volume of the GLB file within 1e-6, and closed.
 - SVG: the fragments have the area of the manifest within 1e-6.
 """
@@ -142,7 +142,25 @@ def check_usd(folder, records, sequences):
                 yield record["file"], problem
 
 
-def check_vtk(folder, records, sequences, take):
+def mass_per_thickness(take):
+    """Density times area of all bodies of a take [kg/m]; none where some are of several materials or not all is held."""
+    scene = json.loads((take / "manifest.json").read_text())["scene"]
+    if scene["take"]["particles"] != "full" or any(body["inclusions"] for body in scene["bodies"]):
+        return None
+
+    def area(ring):
+        x, y = numpy.array(ring, float).T
+        return 0.5 * float(numpy.sum(x * numpy.roll(y, -1) - y * numpy.roll(x, -1)))
+
+    def mass(body):
+        region = body["region"]
+        return scene["materials"][body["material"]]["density"] * sum(map(area, [region["exterior"], *region["holes"]]))
+
+    return sum(map(mass, scene["bodies"]))
+
+
+def check_vtk(folder, records, sequences, take, thickness):
+    take_mass = mass_per_thickness(take)
     for sequence in sequences:
         sets = xml.etree.ElementTree.parse(folder / sequence["file"]).getroot().iter("DataSet")
         listed = [(float(one.get("timestep")), one.get("file")) for one in sets]
@@ -167,6 +185,10 @@ def check_vtk(folder, records, sequences, take):
                 "deformation_gradient": frame["particles.deformation_gradient"].reshape(-1, 4),
                 "piece": frame["particles.piece"],
             }
+            if take_mass is not None:
+                expected["mass"] = load_file(take / "particles.safetensors")["particles.mass"] * thickness
+                if not abs(expected["mass"].sum() / take_mass / thickness - 1) <= RELATIVE:
+                    yield record["file"], f"{expected['mass'].sum()} kg instead of {take_mass * thickness}"
             for name, values in expected.items():
                 by_vtk = vtk_to_numpy(data.GetPointData().GetArray(name))
                 if not (numpy.array_equal(by_vtk, values) and numpy.array_equal(by_meshio.point_data[name], values)):
@@ -248,10 +270,12 @@ def main(take, folder):
     def of(kind, name):
         return [record for record in manifest.get(kind, []) if record["format"] == name]
 
+    # Particles have none; it is that of the solids beside them.
+    thickness = max(record["thickness"] for record in manifest["files"])
     problems = [
         *check_glb(folder, of("files", "glb"), take),
         *check_usd(folder, of("files", "usda"), of("sequences", "usda")),
-        *check_vtk(folder, of("files", "vtk"), of("sequences", "vtk"), take),
+        *check_vtk(folder, of("files", "vtk"), of("sequences", "vtk"), take, thickness),
         *check_obj(folder, of("files", "obj")),
         *check_svg(folder, of("files", "svg")),
     ]

@@ -18,6 +18,8 @@ pub struct FrameMeshes {
     pub provenance: Provenance,
     /// Up axis of formats that do not fix it.
     pub up: UpAxis,
+    /// Thickness of solids [m].
+    pub thickness: f64,
     /// Meshes of each part that was asked for, in that order.
     pub parts: Vec<(Part, Vec<Mesh>)>,
 }
@@ -30,6 +32,7 @@ impl FrameMeshes {
             objects,
             provenance: &self.provenance,
             up: self.up,
+            thickness: self.thickness,
             scene,
             frame,
         };
@@ -57,5 +60,6 @@ pub fn post_frame(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result
         };
         parts.push((part, meshes));
     }
-    Ok(FrameMeshes { provenance: Provenance::new(scene, frame), up: options.up, parts })
+    let (provenance, thickness) = (Provenance::new(scene, frame), options.thickness);
+    Ok(FrameMeshes { provenance, up: options.up, thickness, parts })
 }

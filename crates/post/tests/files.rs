@@ -6,7 +6,7 @@ mod common;
 use common::{halves, options};
 use fissure_files::Folder;
 use fissure_post::{
-    FileRecord, FrameMeshes, History, Manifest, Mesh, PostOptions, Sequences, Slot, WriteError, post_frame,
+    FileRecord, FrameMeshes, History, Manifest, Mesh, PostOptions, Sequences, Slot, WriteError, encode, post_frame,
     write_companions, write_frame,
 };
 use fissure_scene::{Attribute, Cut, Format, Frame, Part, Roughness, Scene, UpAxis, Vector};
@@ -259,6 +259,33 @@ fn attributes_are_there_where_they_are_asked_for_and_known() {
     assert_eq!(of(&frame, &asked), [Attribute::Mode1]);
     frame.cracks[0].formed = None;
     assert_eq!(of(&frame, &asked), []);
+}
+
+/// Truth: the frame, whose particles have 7 kg per metre of thickness, and the thickness that is asked for, .3 m in the
+/// scene. A frame that knows no mass has none.
+#[test]
+fn particles_of_vtk_files_weigh_as_much_as_the_body_is_thick() {
+    let mut sample = sample(1);
+    sample.frame.particles.mass = Some(vec![7.0; sample.frame.particles.len()]);
+    let of = |sample: &Sample, thickness: f64| {
+        let options = PostOptions { thickness, parts: vec![Part::Particles], ..options(&sample.scene) };
+        let meshes = post_frame(&sample.scene, &sample.frame, &options).unwrap();
+        let shot = meshes.shots(&sample.scene, &sample.frame).next().unwrap();
+        encode(Format::Vtk, &shot).unwrap()
+    };
+    for thickness in [0.3, 2.0] {
+        let bytes = of(&sample, thickness);
+        let text = String::from_utf8_lossy(&bytes);
+        let (_, after) = text.split_once("Name=\"mass\"").unwrap();
+        let offset: usize = after.split('"').nth(3).unwrap().parse().unwrap();
+        let mark = b"<AppendedData encoding=\"raw\">\n_";
+        let data = bytes.windows(mark.len()).position(|w| w == mark).unwrap() + mark.len() + offset;
+        let number = |k: usize| f64::from_le_bytes(bytes[data + 8 * k + 8..][..8].try_into().unwrap());
+        let masses: Vec<f64> = (0..sample.frame.particles.len()).map(number).collect();
+        assert_eq!(masses, vec![7.0 * thickness; masses.len()]);
+    }
+    sample.frame.particles.mass = None;
+    assert!(!String::from_utf8_lossy(&of(&sample, 1.0)).contains("mass"));
 }
 
 #[test]

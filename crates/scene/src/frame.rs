@@ -37,6 +37,8 @@ pub struct ParticleFrame {
     pub piece: Vec<u32>,
     /// Position at rest X_p [m].
     pub rest: Vec<Point>,
+    /// Mass per unit thickness m_p [kg/m]; none in takes of older versions.
+    pub mass: Option<Vec<f64>>,
     /// Position x_p [m].
     pub position: Vec<Point>,
     /// Velocity v_p [m/s].

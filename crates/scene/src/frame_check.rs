@@ -79,7 +79,10 @@ impl Frame {
         finite(FramePart::Time, [self.time].iter())?;
         let p = &self.particles;
         finite(FramePart::Particles, points([&p.rest, &p.position]).chain(vectors([&p.velocity])))?;
-        finite(FramePart::Particles, matrices([&p.deformation_gradient, &p.cauchy_stress]))?;
+        finite(
+            FramePart::Particles,
+            matrices([&p.deformation_gradient, &p.cauchy_stress]).chain(p.mass.iter().flatten()),
+        )?;
         for o in &self.outlines {
             let numbers = points([&o.rest, &o.position]).chain(vectors([&o.velocity]));
             finite(FramePart::Outline { body: o.body, ring: o.ring }, numbers)?;
@@ -128,9 +131,10 @@ impl ParticleFrame {
     /// Lengths of all fields, in the order in which they are declared.
     fn lengths(&self) -> Vec<usize> {
         let numbers = [&self.id, &self.body, &self.piece].map(Vec::len);
-        let places = [&self.rest, &self.position].map(Vec::len);
         let tensors = [&self.deformation_gradient, &self.cauchy_stress].map(Vec::len);
-        [&numbers[..], &places, &[self.velocity.len()], &tensors].concat()
+        let mass: Vec<usize> = self.mass.iter().map(Vec::len).collect();
+        let motion = [self.position.len(), self.velocity.len()];
+        [&numbers[..], &[self.rest.len()], &mass, &motion, &tensors].concat()
     }
 }
 
@@ -159,7 +163,7 @@ fn matrices<const N: usize>(lists: [&Vec<Matrix>; N]) -> impl Iterator<Item = &f
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::frame::{CrackFrame, OutlineFrame, Pose};
+    use crate::frame::{CrackFrame, Formed, OutlineFrame, Pose};
 
     fn frame() -> Frame {
         let (point, vector, matrix) = (Point::origin(), Vector::zeros(), Matrix::identity());
@@ -168,6 +172,7 @@ mod tests {
             body: vec![1],
             piece: vec![0],
             rest: vec![point],
+            mass: Some(vec![1.0]),
             position: vec![point],
             velocity: vec![vector],
             deformation_gradient: vec![matrix],
@@ -183,6 +188,7 @@ mod tests {
             below: vec![point],
             above_velocity: vec![vector],
             below_velocity: vec![vector],
+            formed: Some(vec![Formed::default()]),
             ..CrackFrame::default()
         };
         let colliders = vec![Pose { position: point, angle: 0.0 }];
@@ -193,11 +199,12 @@ mod tests {
     #[test]
     fn every_field_has_one_entry_for_each_particle_or_point() {
         type Change = fn(&mut Frame);
-        let particles: [Change; 8] = [
+        let particles: [Change; 9] = [
             |f| f.particles.id.push(0),
             |f| f.particles.body.push(0),
             |f| f.particles.piece.push(0),
             |f| f.particles.rest.push(Point::origin()),
+            |f| f.particles.mass.as_mut().unwrap().push(1.0),
             |f| f.particles.position.push(Point::origin()),
             |f| f.particles.velocity.push(Vector::zeros()),
             |f| f.particles.deformation_gradient.push(Matrix::zeros()),
@@ -208,12 +215,13 @@ mod tests {
             |f| f.outlines[0].position.push(Point::origin()),
             |f| f.outlines[0].velocity.push(Vector::zeros()),
         ];
-        let crack: [Change; 5] = [
+        let crack: [Change; 6] = [
             |f| f.cracks[0].rest.push(Point::origin()),
             |f| f.cracks[0].above.push(Point::origin()),
             |f| f.cracks[0].below.push(Point::origin()),
             |f| f.cracks[0].above_velocity.push(Vector::zeros()),
             |f| f.cracks[0].below_velocity.push(Vector::zeros()),
+            |f| f.cracks[0].formed.as_mut().unwrap().push(Formed::default()),
         ];
         assert_eq!(frame().check(), Ok(()));
         let outline_part = FramePart::Outline { body: 0, ring: 2 };
@@ -233,9 +241,10 @@ mod tests {
     #[test]
     fn every_number_is_finite() {
         type Number = fn(&mut Frame) -> &mut f64;
-        let numbers: [(FramePart, Number); 16] = [
+        let numbers: [(FramePart, Number); 19] = [
             (FramePart::Time, |f| &mut f.time),
             (FramePart::Particles, |f| &mut f.particles.rest[0].y),
+            (FramePart::Particles, |f| &mut f.particles.mass.as_mut().unwrap()[0]),
             (FramePart::Particles, |f| &mut f.particles.position[0].x),
             (FramePart::Particles, |f| &mut f.particles.velocity[0].y),
             (FramePart::Particles, |f| &mut f.particles.deformation_gradient[0].m21),
@@ -248,6 +257,8 @@ mod tests {
             (FramePart::Crack(3), |f| &mut f.cracks[0].below[0].y),
             (FramePart::Crack(3), |f| &mut f.cracks[0].above_velocity[0].x),
             (FramePart::Crack(3), |f| &mut f.cracks[0].below_velocity[0].y),
+            (FramePart::Crack(3), |f| &mut f.cracks[0].formed.as_mut().unwrap()[0].time),
+            (FramePart::Crack(3), |f| &mut f.cracks[0].formed.as_mut().unwrap()[0].mode_1),
             (FramePart::Colliders, |f| &mut f.colliders[0].position.x),
             (FramePart::Colliders, |f| &mut f.colliders[0].angle),
         ];

@@ -204,6 +204,7 @@ impl Particles {
             body: self.body.clone(),
             piece: vec![0; n],
             rest: self.rest.clone(),
+            mass: Some(self.mass.clone()),
             position: Vec::with_capacity(n),
             velocity: Vec::with_capacity(n),
             deformation_gradient: Vec::with_capacity(n),

@@ -38,6 +38,8 @@ pub struct Shot<'a> {
     pub provenance: &'a Provenance,
     /// Up axis, where the format does not fix it.
     pub up: UpAxis,
+    /// Thickness of solids [m].
+    pub thickness: f64,
     /// What was simulated.
     pub scene: &'a Scene,
     /// What came out at this moment.

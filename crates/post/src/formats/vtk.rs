@@ -207,6 +207,10 @@ fn particles(shot: &Shot<'_>) -> Vec<u8> {
         d.array("id", SCALAR, number(&particles.id));
         d.array("body", SCALAR, number(&particles.body));
         d.array("piece", SCALAR, number(&particles.piece));
+        // Of the body as thick as it is shown; takes of older versions do not know it.
+        if let Some(mass) = &particles.mass {
+            d.array("mass", SCALAR, mass.iter().map(|per_thickness| [per_thickness * shot.thickness]));
+        }
         d.array("rest", VECTOR, places(&particles.rest).into_iter());
         d.array("velocity", VECTOR, vectors(&particles.velocity).into_iter());
         let all = |f: &Matrix| [f[(0, 0)], f[(0, 1)], f[(1, 0)], f[(1, 1)]];

@@ -136,6 +136,7 @@ mod tests {
             body: vec![0],
             piece: vec![2],
             rest: vec![Point::new(1.0, 2.0)],
+            mass: None,
             position: vec![Point::new(1.5, 2.0)],
             velocity: vec![Vector::zeros()],
             deformation_gradient: vec![Matrix::identity()],

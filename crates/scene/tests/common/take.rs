@@ -35,6 +35,7 @@ pub fn frame(number: i64) -> Frame {
             piece: vec![u32::MAX; n],
             // The same in every frame.
             rest: (0..n).map(|i| Point::new(0.1 * i as f64, -0.0)).collect(),
+            mass: Some((0..n).map(|i| 1.0 + 0.1 * i as f64).collect()),
             position: points(n),
             velocity: vectors(points(n)),
             deformation_gradient: matrices(points(n)),

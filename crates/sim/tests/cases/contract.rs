@@ -1,8 +1,12 @@
 //! What both formulations promise, asked of each in the same words.
 
-use crate::common::{YOUNG, add_crack, add_traction, hold, plate, pull, rectangle, run, set_velocity, updated};
+use crate::common::{
+    DENSITY, YOUNG, add_crack, add_traction, hold, plate, pull, rectangle, run, set_velocity, updated,
+};
+use fissure_plane::circle_ring;
 use fissure_scene::{
-    BoxSide, Collider, ColliderShape, Contact, Formed, Frame, Load, LoadKind, Point, Pose, Scene, Selection, Vector,
+    BoxSide, Collider, ColliderShape, Contact, Formed, Frame, Load, LoadKind, Point, Pose, Region, Scene, Selection,
+    Vector,
 };
 use fissure_sim::Simulation;
 
@@ -43,6 +47,7 @@ contract!(
     energy_is_kept,
     work_is_energy,
     patch_test,
+    particles_weigh_what_the_body_does,
     walls_know_how_they_formed,
     a_saved_state_goes_on_as_if_nothing_had_been,
     two_threads_give_the_bytes_of_one,
@@ -190,6 +195,18 @@ fn busy_plate() -> Scene {
         friction: 0.2,
     });
     scene
+}
+
+/// Truth: density times area, of a disc with a hole that nothing of which lies on the lattice.
+fn particles_weigh_what_the_body_does(formulation: &Formulation) {
+    let ring = |radius: f64| circle_ring(Point::new(0.731, 0.527), radius, 1e-3);
+    let mut scene = (formulation.of)(plate([1.6, 1.0], 0.1, 1e-4));
+    scene.bodies[0].region = Region { exterior: ring(0.61), holes: vec![ring(0.23).into_iter().rev().collect()] };
+    scene.cracks.clear();
+    let frame = Simulation::new(&scene).unwrap().frame();
+    let mass: f64 = frame.particles.mass.unwrap().iter().sum();
+    let expected = DENSITY * scene.bodies[0].region.area();
+    assert!((mass / expected - 1.0).abs() < 1e-12, "{mass} {expected}");
 }
 
 /// Truth: the frames, one for each step. What a crack has got in a step formed at the end of it, by the K_I of its tip

@@ -15,6 +15,8 @@ pub struct ParticlesAtRest {
     pub body: Vec<u32>,
     /// Position at rest X_p [m].
     pub rest: Vec<Point>,
+    /// Mass per unit thickness m_p [kg/m]; none in takes of older versions.
+    pub mass: Option<Vec<f64>>,
 }
 
 impl ParticlesAtRest {
@@ -23,7 +25,8 @@ impl ParticlesAtRest {
 
     /// What `particles` are at rest.
     pub fn of(particles: &ParticleFrame) -> Self {
-        Self { id: particles.id.clone(), body: particles.body.clone(), rest: particles.rest.clone() }
+        let ParticleFrame { id, body, rest, mass, .. } = particles.clone();
+        Self { id, body, rest, mass }
     }
 
     /// Whether `particles` are these, to the bit.
@@ -33,6 +36,7 @@ impl ParticlesAtRest {
             && self.body == particles.body
             && self.rest.len() == particles.rest.len()
             && self.rest.iter().map(bits).eq(particles.rest.iter().map(bits))
+            && self.mass == particles.mass
     }
 
     /// The bytes of a safetensors file that holds nothing else.
@@ -57,10 +61,14 @@ impl ParticlesAtRest {
         tensors.u32s(Self::ID, self.id.iter().copied());
         tensors.u32s("particles.body", self.body.iter().copied());
         tensors.points("particles.rest", self.rest.iter());
+        if let Some(mass) = &self.mass {
+            tensors.numbers("particles.mass", mass.iter().copied());
+        }
     }
 
     pub(super) fn read(file: &Reader<'_>) -> Result<Self, FrameFileError> {
         let (id, body) = (file.u32s(Self::ID)?, file.u32s("particles.body")?);
-        Ok(Self { id, body, rest: file.points("particles.rest")? })
+        let mass = file.has("particles.mass").then(|| file.f64s("particles.mass")).transpose()?;
+        Ok(Self { id, body, rest: file.points("particles.rest")?, mass })
     }
 }

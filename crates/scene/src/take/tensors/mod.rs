@@ -1,7 +1,7 @@
 //! A frame as safetensors: what each tensor is called, its shape and type.
 //!
-//! What particles are at rest is in a file of its own, for all frames that have the same: `particles.id`, `.body` and
-//! `.rest`. A frame that has others holds these three itself.
+//! What particles are at rest is in a file of its own, for all frames that have the same: `particles.id`, `.body`,
+//! `.rest` and `.mass`. A frame that has others holds these itself.
 //!
 //! `n` particles; `k` rings with `m` points in all, `offset[i]..offset[i + 1]` those of ring `i`; likewise cracks; `t`
 //! tips; `c` colliders. Numbers are little-endian, matrices row by row.
@@ -10,6 +10,7 @@
 //! |---|---|---|
 //! | `frame.number`, `frame.time` | [1] i64, f64 | |
 //! | `particles.id`, `.body`, `.piece` | \[n\] u32 | |
+//! | `particles.mass` | \[n\] f64 | kg/m; not in versions before 5 |
 //! | `particles.rest`, `.position`, `.velocity` | [n, 2] f64 | m, m, m/s |
 //! | `particles.deformation_gradient`, `.cauchy_stress` | [n, 2, 2] f64 | –, Pa |
 //! | `outlines.body`, `.ring`; `.offset` | \[k\] u32; [k + 1] i64 | |

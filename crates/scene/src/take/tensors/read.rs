@@ -13,7 +13,7 @@ use safetensors::tensor::{Dtype, SafeTensors};
 /// [`Frame::check`].
 pub fn frame_from_bytes(bytes: &[u8], at_rest: Option<&ParticlesAtRest>) -> Result<Frame, FrameFileError> {
     let file = Reader::new(bytes)?;
-    let ParticlesAtRest { id, body, rest } = match at_rest {
+    let ParticlesAtRest { id, body, rest, mass } = match at_rest {
         Some(known) if !file.has(ParticlesAtRest::ID) => known.clone(),
         _ => ParticlesAtRest::read(&file)?,
     };
@@ -22,6 +22,7 @@ pub fn frame_from_bytes(bytes: &[u8], at_rest: Option<&ParticlesAtRest>) -> Resu
         body,
         piece: file.u32s("particles.piece")?,
         rest,
+        mass,
         position: file.points("particles.position")?,
         velocity: file.vectors("particles.velocity")?,
         deformation_gradient: file.matrices("particles.deformation_gradient")?,
@@ -78,7 +79,7 @@ impl<'d> Reader<'d> {
         Ok(Self(file))
     }
 
-    fn has(&self, name: &str) -> bool {
+    pub(super) fn has(&self, name: &str) -> bool {
         self.0.tensor(name).is_ok()
     }
 
@@ -104,7 +105,7 @@ impl<'d> Reader<'d> {
         let [value] = self.values(name, dtype, of)?.try_into().map_err(|_| FrameFileError::NotOne(name.into()))?;
         Ok(value)
     }
-    fn f64s(&self, name: &str) -> Result<Vec<f64>, FrameFileError> {
+    pub(super) fn f64s(&self, name: &str) -> Result<Vec<f64>, FrameFileError> {
         self.values(name, Dtype::F64, f64::from_le_bytes)
     }
     /// Numbers of double or single precision.

@@ -55,7 +55,7 @@ impl Tensors {
             }
         }
     }
-    fn numbers(&mut self, name: impl Into<String>, values: impl ExactSizeIterator<Item = f64>) {
+    pub(super) fn numbers(&mut self, name: impl Into<String>, values: impl ExactSizeIterator<Item = f64>) {
         self.f64s(name, vec![values.len()], values);
     }
     pub(super) fn u32s(&mut self, name: impl Into<String>, values: impl ExactSizeIterator<Item = u32>) {
