@@ -23,8 +23,11 @@ pub struct GridKeys {
     /// Distance between neighbouring grid nodes in m. Default: twice the particle spacing.
     #[schemars(transform = LENGTH.bounds())]
     pub cell_size: Option<f64>,
-    /// Instead of both: the coarsest particles with which the highest K of each tip is within so much, in per cent, as
-    /// `"2%"`.
+    /// How far polylines may be off the curves that were drawn in m. Default: a twentieth of the particle spacing.
+    #[schemars(transform = LENGTH.bounds())]
+    pub chord_error: Option<f64>,
+    /// Instead of spacing and size: the coarsest particles with which the highest K of each tip is within so much, in
+    /// per cent, as `"2%"`.
     #[schemars(regex(pattern = r"^[0-9.eE+-]+ *%$"))]
     pub accuracy: Option<String>,
     /// Instead of all of these: the finest particles with which a run takes no longer than so long, meshes included, as

@@ -35,7 +35,7 @@ type Resolved<T> = Result<T, SceneFault>;
 
 /// Particles along the larger side of the bodies' box, unless the scene says otherwise.
 const DEFAULT_RESOLUTION: f64 = 128.0;
-/// Curves are flattened to this part of the particle spacing.
+/// Curves are flattened to this part of the particle spacing, unless the scene says otherwise.
 const FLATTENING: f64 = 1.0 / 20.0;
 
 /// Resolves one document.
@@ -100,7 +100,7 @@ impl<'d> Resolver<'d> {
             LENGTH.check(KeyPath::setting("grid", "particle_spacing"), "the particle spacing", particle_spacing)?;
         }
         // A spacing larger than the bodies is reported by the validation; the shapes must not depend on it until then.
-        let tolerance = FLATTENING * particle_spacing.min(side / 16.0);
+        let tolerance = self.chord_error(particle_spacing)?.unwrap_or(FLATTENING * particle_spacing.min(side / 16.0));
         let (materials, bodies) = self.materials_and_bodies(tolerance, particle_spacing)?;
         let cell_size = document.grid.cell_size.unwrap_or(2.0 * particle_spacing);
         let frames = self.frames()?;
@@ -143,6 +143,19 @@ impl<'d> Resolver<'d> {
         self.short_cracks(&scene);
         self.ligaments(&scene);
         Ok(scene)
+    }
+
+    /// How far polylines may be off curves [m], where the document says so.
+    fn chord_error(&self, particle_spacing: f64) -> Resolved<Option<f64>> {
+        let Some(error) = self.document.grid.chord_error else { return Ok(None) };
+        let path = KeyPath::setting("grid", "chord_error");
+        LENGTH.check(path.clone(), "the chord error", error)?;
+        if error > particle_spacing {
+            let message = format!("a chord error of {error} m is more than the particle spacing, {particle_spacing} m");
+            let remedy = "give a smaller one, or leave it out: it is then a twentieth of the particle spacing";
+            return Err(SceneFault::new(path, message, remedy));
+        }
+        Ok(Some(error))
     }
 
     /// That no array of the document has too many items, before anything is made of them.
