@@ -45,7 +45,7 @@ const PARTICLE: usize = size_of::<[i32; 2]>() + size_of::<Point>() + 3 * size_of
 
 /// Bytes of a particle in a frame.
 const FRAME_PARTICLE: usize =
-    3 * size_of::<u32>() + 2 * size_of::<Point>() + size_of::<Vector>() + 2 * size_of::<Matrix>();
+    3 * size_of::<u32>() + size_of::<f64>() + 2 * size_of::<Point>() + size_of::<Vector>() + 2 * size_of::<Matrix>();
 
 /// Bytes of a vertex of an outline in a frame.
 const FRAME_OUTLINE_POINT: usize = 2 * size_of::<Point>() + size_of::<Vector>();
