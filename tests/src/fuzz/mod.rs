@@ -14,7 +14,7 @@ mod tree;
 pub use random::Random;
 
 use fissure_post::{PostOptions, post_frame};
-use fissure_scene::{Part, Precision, Scene, Take, frame_from_bytes, frame_to_bytes, load};
+use fissure_scene::{Attribute, Part, Precision, Scene, Take, frame_from_bytes, frame_to_bytes, load};
 use fissure_sim::Simulation;
 use sample::{EXAMPLES, Sample};
 use std::ops::ControlFlow;
@@ -252,7 +252,7 @@ impl Default for Bench {
 /// Options that make every part.
 fn everything(scene: &Scene) -> PostOptions {
     let parts = vec![Part::Cracked, Part::Body, Part::Faces, Part::Collider, Part::Particles];
-    PostOptions { parts, ..PostOptions::from(&scene.output) }
+    PostOptions { parts, attributes: Attribute::ALL.to_vec(), ..PostOptions::from(&scene.output) }
 }
 
 /// A refusal without the folder of the bench, which differs from run to run.

@@ -25,8 +25,8 @@ impl ParticlesAtRest {
 
     /// What `particles` are at rest.
     pub fn of(particles: &ParticleFrame) -> Self {
-        let ParticleFrame { id, body, rest, mass, .. } = particles.clone();
-        Self { id, body, rest, mass }
+        let ParticleFrame { id, body, rest, mass, .. } = particles;
+        Self { id: id.clone(), body: body.clone(), rest: rest.clone(), mass: mass.clone() }
     }
 
     /// Whether `particles` are these, to the bit.
