@@ -182,9 +182,14 @@ impl<'a> Solids<'a> {
     /// One that is no solid once its short edges and needles are gone keeps them.
     fn opened(&self, boundaries: &Boundaries) -> Result<BTreeMap<ObjectKey, Mesh>, PostError> {
         let checked = |mesh: Mesh| (self.check)(&mesh).map(|()| mesh);
+        let enclosed = |(&object, sources): (&ObjectKey, &Vec<SourceEdge>)| {
+            self.enclosed(object, sources.clone(), self.options.shortest_edge)
+        };
+        let mut fragments = boundaries.iter().map(enclosed).collect::<Result<Vec<_>, _>>()?;
+        self.part(&mut fragments)?;
         let mut solids = BTreeMap::new();
         let mut broken = BTreeMap::new();
-        for fragment in self.apart(boundaries, |_| self.options.shortest_edge)? {
+        for fragment in &fragments {
             let (object, Some(mesh)) = (fragment.object(), self.solid(fragment)) else { continue };
             let name = mesh.name.clone();
             match checked(mesh) {
@@ -195,8 +200,17 @@ impl<'a> Solids<'a> {
         if broken.is_empty() {
             return Ok(solids);
         }
-        let shortest = |object| if broken.contains_key(&object) { 0.0 } else { self.options.shortest_edge };
-        for fragment in self.apart(boundaries, shortest)? {
+        // What has lost nothing is still as its boundary encloses it.
+        for fragment in &mut fragments {
+            let object = fragment.object();
+            let is_broken = broken.contains_key(&object);
+            if is_broken || fragment.has_lost {
+                let shortest = if is_broken { 0.0 } else { self.options.shortest_edge };
+                *fragment = self.enclosed(object, boundaries[&object].clone(), shortest)?;
+            }
+        }
+        self.part(&mut fragments)?;
+        for fragment in &fragments {
             if let Some((name, _)) = broken.get(&fragment.object())
                 && let (object, Some(mesh)) = (fragment.object(), self.solid(fragment))
             {
@@ -207,19 +221,11 @@ impl<'a> Solids<'a> {
         Ok(solids)
     }
 
-    /// What the boundaries of fragments enclose, those that lie in each other up to the middle of it. `shortest` edge
-    /// of each, as a part of its body.
-    fn apart(&self, boundaries: &Boundaries, shortest: impl Fn(ObjectKey) -> f64) -> Result<Vec<Enclosed>, PostError> {
-        let enclosed = |(&object, sources): (&ObjectKey, &Vec<SourceEdge>)| {
-            self.enclosed(object, sources.clone(), shortest(object))
-        };
-        let mut fragments = boundaries.iter().map(enclosed).collect::<Result<Vec<_>, _>>()?;
+    /// Parts fragments that lie in each other in the middle of what they have in common.
+    fn part(&self, fragments: &mut [Enclosed]) -> Result<(), PostError> {
         let material = |of: &Enclosed, place| self.interiors[of.body as usize].at(place, of.piece);
-        share_out_overlaps(&mut fragments, WIDEST_OVERLAP * self.scene.cell_size, material);
-        for fragment in fragments.iter_mut().filter(|fragment| fragment.has_lost) {
-            self.tidy(fragment, Growth::Hardly)?;
-        }
-        Ok(fragments)
+        share_out_overlaps(fragments, WIDEST_OVERLAP * self.scene.cell_size, material);
+        fragments.iter_mut().filter(|fragment| fragment.has_lost).try_for_each(|of| self.tidy(of, Growth::Hardly))
     }
 
     /// What the boundary of a fragment encloses.
@@ -261,17 +267,17 @@ impl<'a> Solids<'a> {
     }
 
     /// Extrudes a fragment; nothing where it is smaller than asked for.
-    fn solid(&self, fragment: Enclosed) -> Option<Mesh> {
-        let Enclosed { body, piece, grid, mut shapes, sources, .. } = fragment;
+    fn solid(&self, fragment: &Enclosed) -> Option<Mesh> {
+        let &Enclosed { body, piece, grid, .. } = fragment;
         let options = self.options;
-        shapes.retain(|shape| area(shape, grid) >= options.smallest_fragment);
+        let shown = fragment.shapes.iter().filter(|shape| area(shape, grid) >= options.smallest_fragment);
         let division = Division::Fine { size: options.cap_size.map(|size| size / grid.step) };
-        let extrusion = self.extrusion(body, &sources);
+        let extrusion = self.extrusion(body, &fragment.sources);
         let carried = |cap: Cap| {
             let within = self.interiors[body as usize].of_cap(&cap, &extrusion, piece);
             (cap, within)
         };
-        let caps = shapes.iter().map(|shape| carried(triangulate(shape, division))).collect();
+        let caps = shown.map(|shape| carried(triangulate(shape, division))).collect();
         self.mesh(body, piece, &extrusion, caps)
     }
 

@@ -2,8 +2,8 @@
 
 use crate::snap::Grid;
 use crate::widening::Shift;
-use fissure_scene::{BoundaryEdge, CrackEnd, CrackFrame, Fragment, Fragments, Line, Point, Vector};
-use std::collections::BTreeMap;
+use fissure_scene::{BoundaryEdge, CrackEnd, CrackFrame, Fragments, Line, Point, Vector};
+use rustc_hash::FxHashMap;
 
 /// Least width of a crack that is held open, in grid steps: one that narrows to tips right beside its widest point is
 /// still twice as wide as what counts as rounding.
@@ -32,23 +32,25 @@ pub(crate) fn shifts(crack: &CrackFrame, parted: &[bool], grid: Grid) -> Vec<Shi
 pub(crate) fn parted_points(cracks: &[CrackFrame], fragments: &Fragments, numbers: &[u32]) -> Vec<Vec<bool>> {
     // A stretch of a crack is known by its ends, in the direction of its face above.
     let key = |[a, b]: [Point; 2]| [a.x, a.y, b.x, b.y].map(f64::to_bits);
-    let mut sides = BTreeMap::<_, [Option<u32>; 2]>::new();
-    let of = |(fragment, &number): (&'_ Fragment, &u32)| {
-        fragment.boundaries.iter().flatten().map(move |edge| (*edge, number)).collect::<Vec<_>>()
-    };
-    let edges: Vec<(BoundaryEdge, u32)> = fragments.list().iter().zip(numbers).flat_map(of).collect();
+    let edges: Vec<(&BoundaryEdge, u32)> = fragments
+        .list()
+        .iter()
+        .zip(numbers)
+        .flat_map(|(fragment, &number)| fragment.boundaries.iter().flatten().map(move |edge| (edge, number)))
+        .collect();
     let stretch = |edge: &BoundaryEdge| match edge.line {
         Line::Ring(_) => None,
         Line::Above(crack) => Some((crack, 0, (crack, key(edge.rest)))),
         Line::Below(crack) => Some((crack, 1, (crack, key([edge.rest[1], edge.rest[0]])))),
     };
-    for (edge, number) in &edges {
+    let mut sides = FxHashMap::<_, [Option<u32>; 2]>::default();
+    for &(edge, number) in &edges {
         if let Some((_, side, stretch)) = stretch(edge) {
-            sides.entry(stretch).or_default()[side] = Some(*number);
+            sides.entry(stretch).or_default()[side] = Some(number);
         }
     }
     let mut parted: Vec<Vec<bool>> = cracks.iter().map(|crack| vec![false; crack.rest.len()]).collect();
-    for (edge, _) in &edges {
+    for (edge, _) in edges {
         let Some((crack, _, stretch)) = stretch(edge) else { continue };
         if sides.get(&stretch).is_some_and(|[above, below]| above != below) {
             for (point, span) in edge.points.into_iter().zip([0.0, 1.0]) {

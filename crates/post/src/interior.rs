@@ -21,8 +21,15 @@ pub(crate) struct Interior<'a> {
     rest: Vec<Binned>,
 }
 
-/// Column and row of the bin of a particle, and its index.
-type Binned = ([i32; 2], u32);
+/// A particle in its bin: what a search looks at lies side by side.
+#[derive(Debug, Clone, Copy)]
+struct Binned {
+    /// Column and row of the bin.
+    bin: [i32; 2],
+    particle: u32,
+    piece: u32,
+    place: Point,
+}
 
 impl<'a> Interior<'a> {
     /// Those of body `body`, to be found as `cut` needs them; `spacing` [m] is their distance at rest.
@@ -36,12 +43,14 @@ impl<'a> Interior<'a> {
     /// What the corners within a polygon of fragment `piece` carry; where no particle is near, one has moved as the
     /// nearest corner of the outline.
     pub(crate) fn of_cap(&self, cap: &Cap, extrusion: &Extrusion<'_>, piece: u32) -> Vec<Carried> {
-        let outer = extrusion.outer(cap);
+        let mut corners = None;
         let of_corner = |&point: &GridPoint| {
             let place = extrusion.grid.place(point);
             if let Some((rest, velocity)) = self.at(place, piece) {
                 return Carried::within(rest, velocity);
             }
+            // Rarely: the corners are not looked up before.
+            let outer: &Vec<(GridPoint, Carried)> = corners.get_or_insert_with(|| extrusion.outer(cap));
             let distance = |p: GridPoint| ((p.x - point.x) as f64).hypot((p.y - point.y) as f64);
             let nearest = outer.iter().min_by(|p, q| distance(p.0).total_cmp(&distance(q.0)));
             let beside = |(corner, carried): &(GridPoint, Carried)| Carried {
@@ -57,7 +66,7 @@ impl<'a> Interior<'a> {
     /// its particles sees it: X = X_p + F_p⁻¹ (x − x_p). None where none of them is near.
     pub(crate) fn at(&self, place: Point, piece: u32) -> Option<(Point, Vector)> {
         let particles = &self.frame.particles;
-        let p = self.nearest(&self.now, &particles.position, place, piece)?;
+        let p = nearest(&self.now, self.bin, place, piece)?;
         let back = particles.deformation_gradient[p].try_inverse()?;
         Some((particles.rest[p] + back * (place - particles.position[p]), particles.velocity[p]))
     }
@@ -66,36 +75,40 @@ impl<'a> Interior<'a> {
     /// nearest of its particles sees it: x = x_p + F_p (X − X_p). None where none of them is near.
     pub(crate) fn moved(&self, rest: Point, piece: u32) -> Option<(Point, Vector)> {
         let particles = &self.frame.particles;
-        let p = self.nearest(&self.rest, &particles.rest, rest, piece)?;
+        let p = nearest(&self.rest, self.bin, rest, piece)?;
         let way = particles.deformation_gradient[p] * (rest - particles.rest[p]);
         Some((particles.position[p] + way, particles.velocity[p]))
     }
+}
 
-    /// The particle of fragment `piece` whose place, of `places`, is nearest to `place`.
-    fn nearest(&self, sorted: &[Binned], places: &[Point], place: Point, piece: u32) -> Option<usize> {
-        let [column, row] = bin_of(place, self.bin);
-        let mut nearest: Option<(f64, usize)> = None;
-        for column in column.saturating_sub(1)..=column.saturating_add(1) {
-            let low = [column, row.saturating_sub(1)];
-            let begin = sorted.partition_point(|(bin, _)| *bin < low);
-            let column = sorted[begin..].iter().take_while(|(bin, _)| *bin <= [column, row.saturating_add(1)]);
-            let piece_of = |p: usize| self.frame.particles.piece[p];
-            for p in column.map(|&(_, p)| p as usize).filter(|&p| piece_of(p) == piece) {
-                let distance = (places[p] - place).norm_squared();
-                if nearest.is_none_or(|(least, _)| distance < least) {
-                    nearest = Some((distance, p));
-                }
+/// The particle of fragment `piece`, of those in bins of width `bin` [m], whose place is nearest to `place`.
+fn nearest(sorted: &[Binned], bin: f64, place: Point, piece: u32) -> Option<usize> {
+    let [column, row] = bin_of(place, bin);
+    let mut nearest: Option<(f64, u32)> = None;
+    for column in column.saturating_sub(1)..=column.saturating_add(1) {
+        let (low, high) = ([column, row.saturating_sub(1)], [column, row.saturating_add(1)]);
+        let begin = sorted.partition_point(|binned| binned.bin < low);
+        let near = sorted[begin..].iter().take_while(|binned| binned.bin <= high);
+        for binned in near.filter(|binned| binned.piece == piece) {
+            let distance = (binned.place - place).norm_squared();
+            if nearest.is_none_or(|(least, _)| distance < least) {
+                nearest = Some((distance, binned.particle));
             }
         }
-        nearest.map(|(_, p)| p)
     }
+    nearest.map(|(_, particle)| particle as usize)
 }
 
 fn binned(frame: &Frame, body: u32, places: &[Point], bin: f64) -> Vec<Binned> {
-    let of_body = (0..places.len()).filter(|&p| frame.particles.body[p] == body);
-    let mut binned: Vec<Binned> = of_body.map(|p| (bin_of(places[p], bin), p as u32)).collect();
-    binned.sort_unstable();
-    binned
+    let particles = &frame.particles;
+    let of_body = (0..places.len()).filter(|&p| particles.body[p] == body);
+    let mut order: Vec<([i32; 2], u32)> = of_body.map(|p| (bin_of(places[p], bin), p as u32)).collect();
+    order.sort_unstable();
+    let binned = |(bin, particle)| {
+        let p = particle as usize;
+        Binned { bin, particle, piece: particles.piece[p], place: places[p] }
+    };
+    order.into_iter().map(binned).collect()
 }
 
 /// Column and row of the bin that holds `place`; far away ones are all in the last.

@@ -149,15 +149,13 @@ impl Mesh {
     /// Checks that each edge, from one of the `places` of the vertices to another, has one triangle on either side.
     fn check_edges(&self, places: &[[f64; 3]]) -> Result<(), MeshDefect> {
         let mut known = FxHashMap::with_capacity_and_hasher(places.len(), Default::default());
-        let mut distinct = Vec::with_capacity(places.len());
         // The number of the place of each vertex. Adding zero makes −0 and 0 the same place, as they are to a reader.
         let mut number = |place: &[f64; 3]| {
-            *known.entry(place.map(|x| (x as f32 + 0.0).to_bits())).or_insert_with(|| {
-                distinct.push(*place);
-                distinct.len() - 1
-            })
+            let next = known.len() as u32;
+            *known.entry(place.map(|x| (x as f32 + 0.0).to_bits())).or_insert(next)
         };
-        let numbers: Vec<usize> = places.iter().map(&mut number).collect();
+        let numbers: Vec<u32> = places.iter().map(&mut number).collect();
+        let distinct = known.len();
         let edges = || {
             self.all_triangles().flat_map(|triangle| {
                 let [a, b, c] = triangle.map(|i| numbers[i as usize]);
@@ -165,28 +163,30 @@ impl Mesh {
             })
         };
         // The ends of the edges that start at each place, one place after the other.
-        let mut ends = vec![0; 3 * self.triangle_count()];
-        let mut until = vec![0; distinct.len()];
-        edges().for_each(|(a, _)| until[a] += 1);
+        let mut ends = vec![0_u32; 3 * self.triangle_count()];
+        let mut until = vec![0_u32; distinct];
+        edges().for_each(|(a, _)| until[a as usize] += 1);
         let mut begin = 0;
         for count in &mut until {
             begin += std::mem::replace(count, begin);
         }
         for (a, b) in edges() {
-            ends[until[a]] = b;
-            until[a] += 1;
+            let end = &mut until[a as usize];
+            ends[*end as usize] = b;
+            *end += 1;
         }
-        let of = |a: usize| (if a == 0 { 0 } else { until[a - 1] })..until[a];
-        for (a, &place) in distinct.iter().enumerate() {
+        let of = |a: usize| (if a == 0 { 0 } else { until[a - 1] as usize })..until[a] as usize;
+        let place = |a: usize| numbers.iter().position(|&n| n as usize == a).map_or([0.0; 3], |vertex| places[vertex]);
+        for a in 0..distinct {
             let ends = &mut ends[of(a)];
             ends.sort_unstable();
             if ends.windows(2).any(|pair| pair[0] == pair[1]) {
-                return Err(MeshDefect::NotManifold { place });
+                return Err(MeshDefect::NotManifold { place: place(a) });
             }
         }
-        for (a, &place) in distinct.iter().enumerate() {
-            if ends[of(a)].iter().any(|&b| ends[of(b)].binary_search(&a).is_err()) {
-                return Err(MeshDefect::Open { place });
+        for a in 0..distinct {
+            if ends[of(a)].iter().any(|&b| !ends[of(b as usize)].contains(&(a as u32))) {
+                return Err(MeshDefect::Open { place: place(a) });
             }
         }
         Ok(())

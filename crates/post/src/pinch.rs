@@ -12,6 +12,7 @@ use crate::boolean::{Contour, Edge, Operation, Shape, SourceIndex, combine};
 use crate::slot::Slot;
 use crate::snap::GridPoint;
 use crate::source::SourceEdge;
+use rustc_hash::FxHashSet;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
@@ -59,14 +60,23 @@ struct Arm {
 
 /// The vertices that contours pass more than once, with their arms.
 fn pinch_points(shapes: &[Shape]) -> BTreeMap<GridPoint, Vec<Arm>> {
-    let mut arms = BTreeMap::<GridPoint, Vec<Arm>>::new();
-    for &Edge { a, b, source } in shapes.iter().flatten().flatten() {
+    let edges = || shapes.iter().flatten().flatten();
+    // Nearly always there are none.
+    let mut passed = FxHashSet::with_capacity_and_hasher(edges().count(), Default::default());
+    let again = edges().map(|edge| edge.a).filter(|a| !passed.insert((a.x, a.y)));
+    let mut arms: BTreeMap<GridPoint, Vec<Arm>> = again.map(|vertex| (vertex, Vec::new())).collect();
+    if arms.is_empty() {
+        return arms;
+    }
+    for &Edge { a, b, source } in edges() {
         let arm =
             |from: GridPoint, to: GridPoint, starts| Arm { direction: (to.x - from.x, to.y - from.y), starts, source };
-        arms.entry(a).or_default().push(arm(a, b, true));
-        arms.entry(b).or_default().push(arm(b, a, false));
+        for (at, arm) in [(a, arm(a, b, true)), (b, arm(b, a, false))] {
+            if let Some(arms) = arms.get_mut(&at) {
+                arms.push(arm);
+            }
+        }
     }
-    arms.retain(|_, arms| arms.len() > 2);
     arms
 }
 

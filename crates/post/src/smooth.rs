@@ -82,7 +82,13 @@ fn drawn_lines(scene: &Scene) -> Vec<&[Point]> {
 
 /// Whether a point lies on one of some lines, `most` [m] off at most.
 fn is_on(lines: &[&[Point]], point: Point, most: f64) -> bool {
-    lines.iter().flat_map(|line| line.windows(2)).any(|w| distance_to_segment(point, w[0], w[1]) <= most)
+    // Cheaper than distances, with room for rounding.
+    let is_near = |a: Point, b: Point| {
+        let beside = |p: f64, a: f64, b: f64| p >= a.min(b) - 1.01 * most && p <= a.max(b) + 1.01 * most;
+        beside(point.x, a.x, b.x) && beside(point.y, a.y, b.y)
+    };
+    let mut segments = lines.iter().flat_map(|line| line.windows(2));
+    segments.any(|w| is_near(w[0], w[1]) && distance_to_segment(point, w[0], w[1]) <= most)
 }
 
 /// From each point to the weighted mean of the path around it, `most` [m] long at most. The mean reaches as far to both
@@ -92,8 +98,15 @@ fn offsets(rest: &[Point], is_fixed: &[bool], cell_size: f64, most: f64) -> Vec<
     for i in 1..rest.len() {
         arcs[i] = arcs[i - 1] + (rest[i] - rest[i - 1]).norm();
     }
-    let along = |arc: f64| {
-        let next = arcs.partition_point(|a| *a < arc).clamp(1, rest.len() - 1);
+    // `near` is a point of which the place at `arc` is not far.
+    let along = |arc: f64, near: &mut usize| {
+        while *near > 0 && arcs[*near - 1] >= arc {
+            *near -= 1;
+        }
+        while *near < arcs.len() && arcs[*near] < arc {
+            *near += 1;
+        }
+        let next = (*near).clamp(1, rest.len() - 1);
         let length = arcs[next] - arcs[next - 1];
         let part = if length > 0.0 { (arc - arcs[next - 1]) / length } else { 0.0 };
         rest[next - 1] + part * (rest[next] - rest[next - 1])
@@ -116,9 +129,11 @@ fn offsets(rest: &[Point], is_fixed: &[bool], cell_size: f64, most: f64) -> Vec<
     }
     (0..rest.len())
         .map(|i| {
+            let mut near = [i; 2];
             let way = |(k, weight): (usize, &f64)| {
                 let step = room[i] * (k + 1) as f64 / PLACES as f64;
-                *weight * ((along(arcs[i] - step) - rest[i]) + (along(arcs[i] + step) - rest[i]))
+                let [back, forth] = &mut near;
+                *weight * ((along(arcs[i] - step, back) - rest[i]) + (along(arcs[i] + step, forth) - rest[i]))
             };
             let offset = weights.iter().enumerate().map(way).sum::<Vector>() / whole;
             if room[i] > 0.0 { offset.cap_magnitude(most) } else { Vector::zeros() }
