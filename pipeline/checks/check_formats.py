@@ -1,17 +1,19 @@
-"""Holds USD, VTK, OBJ and SVG files of a run against its GLB files and these against its take.
+"""Holds PLY, USD, VTK, OBJ and SVG files of a run against its GLB files and these against its take.
 
     pip install numpy safetensors usd-core vtk meshio trimesh
     python check_formats.py OUT/NAME.take FOLDER
 
-FOLDER holds the files of `fissure post OUT/NAME.take --formats glb,obj,usda,vtk,svg --parts cracked,particles,faces
+FOLDER holds the files of `fissure post OUT/NAME.take --formats glb,ply,obj,usda,vtk,svg --parts cracked,particles,faces
 --output FOLDER`. In every frame that each format has:
 
 - USD: the stage over all frames opens, and its points, normals, velocities and materials are those of the GLB file, to
   the bit, and texture coordinates upwards; a fragment that is not there yet has no points; extents hold the points; a
   file of a frame by itself says the same.
 - Where crack walls tell how they came about (`--set output.attributes=["crack_age","mouth_distance","mode_1"]`), ages and
-  K_I of each wall lie within those of the take, and distances within its longest way; USD and VTK files say the same as
-  the GLB file, to the bit, and VTK nothing on other surfaces.
+  K_I of each wall lie within those of the take, and distances within its longest way; PLY, USD and VTK files say the same as
+  the GLB file, to the bit, and PLY and VTK nothing on other surfaces.
+- PLY: places, normals, velocities and triangles are those of the GLB file, to the bit, turned so that the axis up is that
+  of the scene, texture coordinates upwards, and fragments and materials of the same vertices.
 - VTK: its own reader reads surfaces with as many triangles as the manifest says, and of its volume within 1e-5 (which
   the reader sums in single precision); it and meshio read the particles of the take, to the bit, and their mass in all is density times area times thickness; the list names the times.
 - OBJ: trimesh reads each object, of the volume of the GLB file within 1e-6, and closed.
@@ -231,6 +233,68 @@ def check_glb(folder, records, take):
             yield record["file"], problem
 
 
+def ply(path):
+    """Properties of the vertices of a PLY file, and its triangles."""
+    header, body = path.read_bytes().split(b"end_header\n", 1)
+    lines = [line.split() for line in header.decode().splitlines()]
+    counts = {line[1]: int(line[2]) for line in lines if line[0] == "element"}
+    names = [line[2] for line in lines if line[:2] == ["property", "float"]]
+    floats = counts["vertex"] * len(names)
+    vertices = numpy.frombuffer(body, "<f4", floats).reshape(-1, len(names))
+    faces = numpy.frombuffer(body, [("count", "u1"), ("corners", "<i4", 3)], counts.get("face", 0), 4 * floats)
+    if (faces["count"] != 3).any() or 4 * floats + faces.nbytes != len(body):
+        raise ValueError(f"{path}: no list of triangles")
+    return dict(zip(names, vertices.T)), faces["corners"]
+
+
+def ply_problems(path, of_glb, up):
+    """Problems of a PLY file of solids, against the GLB file of the same: its vertices are in the same order."""
+    found, faces = ply(path)
+    if not of_glb:
+        if len(faces):
+            yield "shows something where the GLB file is empty"
+        return
+    # The viewer, who stands on +z where y is up, stands on −y where z is up.
+    turned = lambda values: values if up == "y" else numpy.stack([values[:, 0], -values[:, 2], values[:, 1]], 1)
+    all_of = lambda name: numpy.concatenate([one[name] for one in of_glb.values()])
+    expected = {}
+    for names, attribute in (("x y z", "POSITION"), ("nx ny nz", "NORMAL"), ("vx vy vz", "_VELOCITY")):
+        expected |= dict(zip(names.split(), turned(all_of(attribute)).T))
+    for names, attribute in (("s t", "TEXCOORD_0"), ("s1 t1", "TEXCOORD_1")):
+        if attribute in next(iter(of_glb.values())):
+            expected |= dict(zip(names.split(), ([0, 1] + all_of(attribute) * [1, -1]).T))
+    sizes = [len(one["POSITION"]) for one in of_glb.values()]
+    expected["slot"] = numpy.repeat([float(material == "inside") for _, material in of_glb], sizes)
+    pieces = [int(re.search(r"_(\d+)$", name).group(1)) for name, _ in of_glb]
+    expected["piece"] = numpy.repeat(pieces, sizes)
+    nothing = numpy.zeros((1, len(ATTRIBUTES)), "float32")
+    told = [one.get("_CRACK", nothing.repeat(size, 0)) for one, size in zip(of_glb.values(), sizes)]
+    for name, values in zip(ATTRIBUTES, numpy.concatenate(told).T):
+        # What was not asked for is no property; the GLB file has zeros there.
+        if name in found or values.any():
+            expected[name] = values
+    if set(found) != set(expected):
+        yield f"has {sorted(found)} instead of {sorted(expected)}"
+    for name in set(found) & set(expected):
+        # 1 − (1 − v) is not v to the bit.
+        tolerance = 1e-7 * max(1.0, numpy.abs(expected[name]).max()) if name[0] in "st" and name != "slot" else 0.0
+        if found[name].shape != expected[name].shape or numpy.abs(found[name] - expected[name]).max() > tolerance:
+            yield f"{name} differs"
+    firsts = numpy.concatenate([[0], numpy.cumsum(sizes)])
+    triangles = [one["indices"].reshape(-1, 3).astype(int) + first for one, first in zip(of_glb.values(), firsts)]
+    if not numpy.array_equal(faces, numpy.concatenate(triangles)):
+        yield "triangles differ"
+
+
+def check_ply(folder, records, take):
+    up = json.loads((take / "manifest.json").read_text())["scene"]["output"]["up"]
+    for record in records:
+        of_glb = (folder / record["file"]).with_suffix(".glb")
+        if record["triangles"] > 0 and of_glb.exists():
+            for problem in ply_problems(folder / record["file"], primitives(of_glb), up):
+                yield record["file"], problem
+
+
 def check_obj(folder, records):
     for record in records:
         scene = trimesh.load_scene(folder / record["file"], process=False, split_objects=True, group_material=False)
@@ -274,6 +338,7 @@ def main(take, folder):
     thickness = max(record["thickness"] for record in manifest["files"])
     problems = [
         *check_glb(folder, of("files", "glb"), take),
+        *check_ply(folder, of("files", "ply"), take),
         *check_usd(folder, of("files", "usda"), of("sequences", "usda")),
         *check_vtk(folder, of("files", "vtk"), of("sequences", "vtk"), take, thickness),
         *check_obj(folder, of("files", "obj")),
@@ -281,7 +346,7 @@ def main(take, folder):
     ]
     for file, problem in problems:
         print(f"{file}: {problem}", file=sys.stderr)
-    counts = ", ".join(f"{len(of('files', name))} {name}" for name in ("usda", "vtk", "obj", "svg"))
+    counts = ", ".join(f"{len(of('files', name))} {name}" for name in ("ply", "usda", "vtk", "obj", "svg"))
     print(f"{counts} and what goes with them: {len(problems)} problems")
     sys.exit(bool(problems))
 
