@@ -215,6 +215,11 @@ impl Grid {
         self.first_node[band] as usize..self.first_node[end] as usize
     }
 
+    /// The nodes of a band.
+    pub(crate) fn nodes_of_band(&self, band: usize) -> Range<usize> {
+        self.first_node[band] as usize..self.first_node[band + 1] as usize
+    }
+
     /// Nodes in a row of a band.
     fn width(&self, band: usize) -> usize {
         (self.first_node[band + 1] - self.first_node[band]) as usize / BAND
@@ -325,8 +330,8 @@ mod tests {
                     let lasts = (0..width as i32).all(|b| grid.node([i + width as i32 - 1, j + b]).is_some());
                     let found = walker.rows([i, j], width).map(|rows| rows[..width].to_vec());
                     prop_assert_eq!(&found, &firsts.filter(|_| lasts));
-                    let row = walker.lowest_row([i, j], width);
-                    prop_assert_eq!(row, found.and_then(|_| grid.row_index(j)));
+                    let lowest = walker.lowest_node([i, j], width);
+                    prop_assert_eq!(lowest, found.map(|rows| rows[0]));
                 }
             }
         }

@@ -16,8 +16,6 @@ pub(crate) struct Walker<'a> {
 #[derive(Debug, Clone, Copy)]
 struct Found {
     band: i32,
-    /// Index of the band's lowest row among all.
-    row: usize,
     first: i32,
     end: i32,
     /// Node in the first column of the lowest row of the band.
@@ -29,7 +27,7 @@ struct Found {
 impl<'a> Walker<'a> {
     /// A walker that has not found anything yet.
     pub(crate) fn new(grid: &'a Grid) -> Self {
-        Self { grid, found: [Found { band: i32::MIN, row: 0, first: 0, end: 0, node: 0, width: 0 }; 2] }
+        Self { grid, found: [Found { band: i32::MIN, first: 0, end: 0, node: 0, width: 0 }; 2] }
     }
 
     /// First node of each row of a stencil of `width` nodes per axis whose lowest node is at `lowest`; none unless all
@@ -54,16 +52,16 @@ impl<'a> Walker<'a> {
         Some(rows)
     }
 
-    /// Index of the row of the lowest nodes of such a stencil; none unless all of its nodes exist.
+    /// The lowest node of such a stencil; none unless all of its nodes exist.
     #[inline(always)]
-    pub(crate) fn lowest_row(&mut self, lowest: [i32; 2], width: usize) -> Option<usize> {
+    pub(crate) fn lowest_node(&mut self, lowest: [i32; 2], width: usize) -> Option<usize> {
         let [i, j] = lowest;
         let (band, row) = (band_of(j), row_in_band(j));
         let lower = self.span(band, i, width)?;
         if row + width > BAND {
             self.span(band + 1, i, width)?;
         }
-        Some(lower.row + row)
+        Some(lower.node + (i - lower.first) as usize + row * lower.width)
     }
 
     /// The span of `band` that holds `width` columns from `column` on.
@@ -91,7 +89,6 @@ impl Grid {
         let span = self.bands.span_with(index, column)?;
         Some(Found {
             band,
-            row: index * BAND,
             first: span.first,
             end: span.end,
             node: self.first_node[index] as usize + span.number as usize,

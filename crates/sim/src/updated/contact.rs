@@ -169,7 +169,7 @@ impl CrackSurroundings<'_> {
         if lowest > highest {
             return places;
         }
-        for &p in &order.particles[order.first[lowest] as usize..order.first[highest + 1] as usize] {
+        for &p in order.of_nodes(grid.row(lowest).nodes.start..grid.row(highest).nodes.end) {
             let p = p as usize;
             let position = self.points.point[p].position;
             let stencil = self.lattice.stencil(position);

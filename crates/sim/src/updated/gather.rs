@@ -11,11 +11,8 @@ use crate::grid::walker::Walker;
 use crate::threads::prelude::*;
 use fissure_scene::{Kernel, Matrix, Transfer, Vector};
 
-/// Particles of a batch.
-pub(super) const BATCH: usize = 16;
-
 /// What a particle gathers from the grid.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Gathered {
     /// Σ v_i w_ip at the end of the step [m/s].
     pub(super) velocity: Vector,
@@ -26,9 +23,9 @@ pub(super) struct Gathered {
     /// C_p = Σ v_i (x_i − x_p)ᵀ w_ip D⁻¹ [1/s] (Jiang et al. 2015).
     pub(super) affine: Matrix,
     /// The beginning's velocity, sent to the grid and back once more [m/s] (Hammerquist & Nairn 2017).
-    smoothed: Vector,
+    pub(super) smoothed: Vector,
     /// What the particle's velocity gains [m/s], with [`Transfer::Aflip`].
-    gain: Vector,
+    pub(super) gain: Vector,
 }
 
 impl Gathered {
@@ -54,9 +51,9 @@ impl Gathered {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Wanted {
     pub(super) before: bool,
-    affine: bool,
-    smoothed: bool,
-    gain: bool,
+    pub(super) affine: bool,
+    pub(super) smoothed: bool,
+    pub(super) gain: bool,
 }
 
 impl Wanted {
@@ -75,7 +72,7 @@ impl Wanted {
 }
 
 /// 1/D of the kernels whose D = Σ w (x_i − x_p)² is the same everywhere [1/m²] (Jiang et al. 2015).
-fn inverse_spread(kernel: Kernel, cell_size: f64) -> Option<f64> {
+pub(super) fn inverse_spread(kernel: Kernel, cell_size: f64) -> Option<f64> {
     match kernel {
         Kernel::Quadratic => Some(4.0 / (cell_size * cell_size)),
         Kernel::Cubic => Some(3.0 / (cell_size * cell_size)),
@@ -155,18 +152,6 @@ struct Weights<const L: usize> {
     ay: [f64; kernel::MAX_WIDTH],
 }
 
-impl<const L: usize> Weights<L> {
-    const NONE: Self = Self {
-        rows: [0; kernel::MAX_WIDTH],
-        x: [0.0; L],
-        dx: [0.0; L],
-        ax: [0.0; L],
-        y: [0.0; kernel::MAX_WIDTH],
-        dy: [0.0; kernel::MAX_WIDTH],
-        ay: [0.0; kernel::MAX_WIDTH],
-    };
-}
-
 /// Sums over the rows of a stencil, column by column, along both axes: by the weights of the rows and by their
 /// derivatives or affine weights.
 #[derive(Clone, Copy)]
@@ -231,51 +216,6 @@ impl<const L: usize> Columns<L> {
             g.smoothed = across(&self.smoothed);
         }
         g
-    }
-}
-
-/// Neighbouring particles whose sums over rows are worked out before any of them is asked for. Between the two they lie
-/// in memory, where neighbouring numbers are written and read at once.
-pub(super) struct Batch<const L: usize> {
-    weights: [Weights<L>; BATCH],
-    columns: [Columns<L>; BATCH],
-}
-
-impl<const L: usize> Batch<L> {
-    pub(super) const NONE: Self = Self { weights: [Weights::NONE; BATCH], columns: [Columns::NONE; BATCH] };
-
-    /// Works out the sums of `points`, at most [`BATCH`], as if no crack divided them, for a kernel of `W` nodes along
-    /// an axis.
-    #[inline(always)]
-    pub(super) fn fill<const W: usize>(
-        &mut self,
-        from: &FromGrid<'_>,
-        walker: &mut Walker<'_>,
-        points: &[MaterialPoint],
-        wanted: Wanted,
-    ) {
-        for (weights, point) in self.weights.iter_mut().zip(points) {
-            *weights = from.weights::<W, L>(walker, point, wanted);
-        }
-        for (columns, weights) in self.columns.iter_mut().zip(&self.weights).take(points.len()) {
-            columns.fill::<W>(weights, from.nodes, wanted);
-        }
-    }
-
-    /// What the particle at place `k` of those filled in gathers: `particle`, which is at `point`.
-    #[inline(always)]
-    pub(super) fn gathered<const W: usize>(
-        &self,
-        k: usize,
-        from: &FromGrid<'_>,
-        particle: usize,
-        point: &MaterialPoint,
-        wanted: Wanted,
-    ) -> Gathered {
-        match from.lattice.stencils.of(particle) {
-            Some(entries) => from.gather_divided::<W>(entries, point, wanted),
-            None => self.columns[k].gathered::<W>(&self.weights[k], from.nodes, wanted),
-        }
     }
 }
 
@@ -370,7 +310,12 @@ impl<'a> FromGrid<'a> {
     }
 
     /// The same for a particle that cracks divide.
-    fn gather_divided<const W: usize>(&self, entries: &[Entry], point: &MaterialPoint, wanted: Wanted) -> Gathered {
+    pub(super) fn gather_divided<const W: usize>(
+        &self,
+        entries: &[Entry],
+        point: &MaterialPoint,
+        wanted: Wanted,
+    ) -> Gathered {
         let nodes = self.nodes;
         let stencil = self.lattice.stencil(point.position);
         let mut g = Gathered::default();

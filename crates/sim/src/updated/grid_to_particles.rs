@@ -1,6 +1,7 @@
 //! From the grid to the particles: deformation, velocity, collision and advection (thesis 3.1.5 and 3.1.6).
 
-use super::gather::{BATCH, Batch, FromGrid, Wanted};
+use super::gather::{FromGrid, Wanted};
+use super::gather_batch::{BATCH, Batch};
 use super::lattice::Lattice;
 use super::nodes::Nodes;
 use super::plastic::PlasticPart;
@@ -83,14 +84,14 @@ impl ParticleStep<'_> {
     /// When a particle is no longer finite, is turned inside out, or moves by more than a cell.
     pub(super) fn advance(&self, points: &mut Points) -> Result<f64, Failure> {
         match self.from.lattice.kernel {
-            Kernel::Bilinear => self.all_tasks::<2, 2>(points),
-            Kernel::Gimp | Kernel::Quadratic => self.all_tasks::<3, 4>(points),
-            Kernel::Cubic => self.all_tasks::<4, 4>(points),
+            Kernel::Bilinear => self.all_tasks::<2>(points),
+            Kernel::Gimp | Kernel::Quadratic => self.all_tasks::<3>(points),
+            Kernel::Cubic => self.all_tasks::<4>(points),
         }
     }
 
     /// Cuts what all particles carry into tasks and runs them.
-    fn all_tasks<const W: usize, const L: usize>(&self, all: &mut Points) -> Result<f64, Failure> {
+    fn all_tasks<const W: usize>(&self, all: &mut Points) -> Result<f64, Failure> {
         let mut affine = all.affine.chunks_mut(CHUNK);
         let mut plastic = all.plastic.chunks_mut(CHUNK);
         let mut motion = all.motion.chunks_mut(CHUNK);
@@ -102,7 +103,7 @@ impl ParticleStep<'_> {
             motion: motion.next().unwrap_or_default(),
         };
         let tasks: Vec<Task<'_>> = all.point.chunks_mut(CHUNK).enumerate().map(cut).collect();
-        let run = |task: Task<'_>| run_widest(TaskOfStep::<W, L> { step: self, task });
+        let run = |task: Task<'_>| run_widest(TaskOfStep::<W> { step: self, task });
         let reports: Vec<Report> = if self.from.setup.is_parallel() {
             tasks.into_par_iter().map(run).collect()
         } else {
@@ -116,25 +117,25 @@ impl ParticleStep<'_> {
     }
 }
 
-/// A task of a step, for a kernel of `W` nodes along an axis, `L` numbers side by side.
-struct TaskOfStep<'a, 't, const W: usize, const L: usize> {
+/// A task of a step, for a kernel of `W` nodes along an axis.
+struct TaskOfStep<'a, 't, const W: usize> {
     step: &'a ParticleStep<'a>,
     task: Task<'t>,
 }
 
-impl<const W: usize, const L: usize> Loop for TaskOfStep<'_, '_, W, L> {
+impl<const W: usize> Loop for TaskOfStep<'_, '_, W> {
     type Output = Report;
 
     #[inline(always)]
     fn run(self) -> Report {
         let ParticleStep { from: FromGrid { setup, lattice, nodes }, obstacles, time_step } = self.step;
-        run_task::<W, L>(setup, lattice, nodes, obstacles, *time_step, self.task)
+        run_task::<W>(setup, lattice, nodes, obstacles, *time_step, self.task)
     }
 }
 
 /// Runs a task. As arguments of their own the parts are known not to overlap what the task changes.
 #[inline(always)]
-fn run_task<const W: usize, const L: usize>(
+fn run_task<const W: usize>(
     setup: &Setup,
     lattice: &Lattice,
     nodes: &Nodes,
@@ -148,14 +149,14 @@ fn run_task<const W: usize, const L: usize>(
     let mut wanted = Wanted::by(settings.transfer, settings.kernel);
     wanted.before |= !task.motion.is_empty();
     let mut report = Report::default();
-    let mut batch = Batch::<L>::NONE;
+    let mut batch = Batch::<W>::NONE;
     for k in 0..task.points.len() {
         if k % BATCH == 0 {
             let points = &task.points[k..task.points.len().min(k + BATCH)];
-            batch.fill::<W>(&from, &mut walker, points, wanted);
+            batch.fill(&from, &mut walker, points, wanted);
         }
         let (p, point) = (task.first + k, &mut task.points[k]);
-        let g = batch.gathered::<W>(k % BATCH, &from, p, point, wanted);
+        let g = batch.gathered(k % BATCH, &from, p, point, wanted);
         if let Some(motion) = task.motion.get_mut(k) {
             *motion = g.motion(time_step);
         }

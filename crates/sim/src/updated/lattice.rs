@@ -1,13 +1,14 @@
-//! The grid of a step: its nodes, the order of particles by rows of it, and which particle reaches which field.
+//! The grid of a step: its nodes, the order of particles by cells of it, and which particle reaches which field.
 
 use super::points::MaterialPoint;
 use super::setup::Setup;
 use crate::crack::division::{Division, TipCut};
+use crate::grid::Grid;
 use crate::grid::entries::{Entries, Entry};
 use crate::grid::fields::Fields;
-use crate::grid::kernel::{self, Stencil};
+use crate::grid::kernel::{self, AxisStencil, Stencil};
 use crate::grid::walker::Walker;
-use crate::grid::{BAND, Grid};
+use crate::threads::prelude::*;
 use fissure_scene::{Kernel, Point, Vector};
 use std::ops::Range;
 
@@ -28,7 +29,7 @@ pub(super) struct Lattice {
     half_size: f64,
     /// The nodes that particles reach; none before the first step.
     pub(super) grid: Grid,
-    pub(super) order: RowOrder,
+    pub(super) order: Order,
     /// The cracks where they are now.
     pub(super) division: Division,
     /// The own field of each node and, near cracks, further ones.
@@ -37,35 +38,77 @@ pub(super) struct Lattice {
     pub(super) stencils: Entries,
 }
 
-/// Particles sorted by the lowest row of nodes that they reach; particles of one row stay in the order of their
-/// numbers.
+/// Particles sorted by the lowest node that they reach, row by row and along each row; those of one node stay in the
+/// order of their numbers.
 #[derive(Debug, Default)]
-pub(super) struct RowOrder {
-    /// Index of the lowest row of each particle among the rows of the grid.
-    row: Vec<u32>,
-    /// First place in `particles` of each row; one more at the end.
-    pub(super) first: Vec<u32>,
-    /// Particles, row by row.
-    pub(super) particles: Vec<u32>,
+pub(super) struct Order {
+    /// Lowest node of each particle.
+    node: Vec<u32>,
+    /// First place in `particles` of each node; two more at the end.
+    first: Vec<u32>,
+    particles: Vec<u32>,
 }
 
-impl RowOrder {
-    /// Sorts by `row`, which is below `rows`.
-    fn sort(&mut self, rows: usize) {
+impl Order {
+    /// Sorts by `node`, which is below `nodes`.
+    fn sort(&mut self, nodes: usize) {
         self.first.clear();
-        self.first.resize(rows + 1, 0);
-        for &row in &self.row {
-            self.first[row as usize + 1] += 1;
+        self.first.resize(nodes + 2, 0);
+        // Counted two places on and summed up, each number is where the node before begins; moving on with each of its
+        // particles, it ends where the next one begins.
+        for &node in &self.node {
+            self.first[node as usize + 2] += 1;
         }
-        for row in 0..rows {
-            self.first[row + 1] += self.first[row];
+        let mut sum = 0;
+        for first in &mut self.first {
+            sum += *first;
+            *first = sum;
         }
-        let mut next = self.first.clone();
-        self.particles.resize(self.row.len(), 0);
-        for (p, &row) in self.row.iter().enumerate() {
-            let place = &mut next[row as usize];
+        self.particles.resize(self.node.len(), 0);
+        for (p, &node) in self.node.iter().enumerate() {
+            let place = &mut self.first[node as usize + 1];
             self.particles[*place as usize] = p as u32;
             *place += 1;
+        }
+    }
+
+    /// The particles whose lowest nodes are among `nodes`.
+    pub(super) fn of_nodes(&self, nodes: Range<usize>) -> &[u32] {
+        &self.particles[self.first[nodes.start] as usize..self.first[nodes.end] as usize]
+    }
+}
+
+/// Particles that one task looks at.
+const PART: usize = 4096;
+
+/// Where particles are.
+#[derive(Debug, Clone, Copy)]
+struct Survey {
+    /// The box around them [m].
+    low: Point,
+    high: Point,
+    /// Whether the grid has all nodes that they reach.
+    has_nodes: bool,
+    /// Whether any of them has another lowest node than before.
+    has_changed: bool,
+}
+
+impl Survey {
+    /// Of no particle.
+    const NONE: Self = Self {
+        low: Point::new(f64::INFINITY, f64::INFINITY),
+        high: Point::new(f64::NEG_INFINITY, f64::NEG_INFINITY),
+        has_nodes: true,
+        has_changed: false,
+    };
+
+    /// Of the particles of both.
+    fn with(self, other: Self) -> Self {
+        Self {
+            low: self.low.inf(&other.low),
+            high: self.high.sup(&other.high),
+            has_nodes: self.has_nodes && other.has_nodes,
+            has_changed: self.has_changed || other.has_changed,
         }
     }
 }
@@ -92,7 +135,8 @@ impl Lowest {
     #[inline(always)]
     fn of(&self, place: Point) -> [i32; 2] {
         let x = (place - self.origin) * self.inverse_cell_size;
-        [x.x, x.y].map(|x| kernel::axis_stencil(self.kernel, self.half_size, x).first)
+        let first = |x: f64| kernel::axis_stencil(self.kernel, self.half_size, x).first;
+        [first(x.x), first(x.y)]
     }
 }
 
@@ -104,7 +148,7 @@ impl Lattice {
             kernel: setup.scene.solver.kernel,
             half_size: (0.5 * setup.particles.spacing / h).min(0.5),
             grid: Grid::default(),
-            order: RowOrder::default(),
+            order: Order::default(),
             division: Division::new(
                 Vec::new(),
                 setup.scene.solver.tip_division,
@@ -118,67 +162,94 @@ impl Lattice {
         }
     }
 
-    /// Lays the nodes around the particles and sorts these by rows; no node is divided any more. Whether a grid can be
-    /// so large as to hold all particles.
+    /// Lays the nodes around the particles and sorts these; no node is divided any more. Whether a grid can be so large
+    /// as to hold all particles.
     pub(super) fn lay(&mut self, setup: &Setup, points: &[MaterialPoint]) -> bool {
-        let (mut low, mut high) = fissure_plane::bounds(&[]);
-        for p in points {
-            (low, high) = (low.inf(&p.position), high.sup(&p.position));
-        }
-        let Some(grid) = Grid::around(setup.particles.anchor, low, high, setup.scene.cell_size, MARGIN) else {
+        // Most steps need no other nodes than the one before.
+        let before = self.survey(setup, points);
+        let (h, anchor) = (setup.scene.cell_size, setup.particles.anchor);
+        let Some(grid) = Grid::around(anchor, before.low, before.high, h, MARGIN) else {
             return false;
         };
-        let mut before = std::mem::replace(&mut self.grid, grid);
-        let is_same_lattice = self.grid.take_nodes(&mut before);
-        if !(is_same_lattice && self.sort_rows(points)) {
+        let mut old = std::mem::replace(&mut self.grid, grid);
+        let is_same_lattice = self.grid.take_nodes(&mut old);
+        let mut now = before;
+        if !(is_same_lattice && before.has_nodes) {
             let lowest = Lowest::on(self);
             self.grid.lay(points.iter().map(|p| lowest.of(p.position)), kernel::width(self.kernel), ROOM);
-            if !self.sort_rows(points) {
+            now = self.survey(setup, points);
+            if !now.has_nodes {
                 return false;
             }
+        }
+        // Stiff bodies keep their cells for many steps.
+        let is_sorted = self.order.particles.len() == points.len() && self.order.first.len() == self.grid.len() + 2;
+        if before.has_changed || now.has_changed || !is_sorted {
+            self.order.sort(self.grid.len());
         }
         self.fields.clear(self.grid.len());
         true
     }
 
-    /// Sorts the particles by rows. Whether the grid has all nodes that they reach; if not, nothing is sorted.
-    fn sort_rows(&mut self, points: &[MaterialPoint]) -> bool {
-        let lowest = Lowest::on(self);
-        let width = kernel::width(self.kernel);
-        let (grid, order) = (&self.grid, &mut self.order);
-        let mut changed = order.row.len() != points.len() || order.first.len() != grid.rows() + 1;
-        order.row.resize(points.len(), 0);
-        let mut walker = Walker::new(grid);
-        for (row, p) in order.row.iter_mut().zip(points) {
-            let Some(now) = walker.lowest_row(lowest.of(p.position), width) else {
-                // What follows sorts anew.
-                order.first.clear();
-                return false;
-            };
-            changed |= *row != now as u32;
-            *row = now as u32;
-        }
-        // Stiff bodies keep their rows for many steps.
-        if changed {
-            order.sort(grid.rows());
-        }
-        true
+    /// Finds the lowest node of each particle.
+    fn survey(&mut self, setup: &Setup, points: &[MaterialPoint]) -> Survey {
+        let (lowest, width) = (Lowest::on(self), kernel::width(self.kernel));
+        self.order.node.resize(points.len(), 0);
+        let grid = &self.grid;
+        let survey = |(nodes, points): (&mut [u32], &[MaterialPoint])| {
+            let (mut of_part, mut walker) = (Survey::NONE, Walker::new(grid));
+            for (node, point) in nodes.iter_mut().zip(points) {
+                let place = point.position;
+                of_part.low = Point::new(of_part.low.x.min(place.x), of_part.low.y.min(place.y));
+                of_part.high = Point::new(of_part.high.x.max(place.x), of_part.high.y.max(place.y));
+                if of_part.has_nodes {
+                    match walker.lowest_node(lowest.of(place), width) {
+                        Some(now) => {
+                            of_part.has_changed |= *node != now as u32;
+                            *node = now as u32;
+                        }
+                        None => of_part.has_nodes = false,
+                    }
+                }
+            }
+            of_part
+        };
+        let parts: Vec<(&mut [u32], &[MaterialPoint])> =
+            self.order.node.chunks_mut(PART).zip(points.chunks(PART)).collect();
+        let parts: Vec<Survey> = if setup.is_parallel() {
+            parts.into_par_iter().map(survey).collect()
+        } else {
+            parts.into_iter().map(survey).collect()
+        };
+        parts.into_iter().fold(Survey::NONE, Survey::with)
     }
 
     /// The stencil of a particle at `place` that no crack divides.
     #[inline(always)]
     pub(super) fn stencil(&self, place: Point) -> Stencil {
+        let (x, y) = (self.axis_stencil(self.kernel, 0, place.x), self.axis_stencil(self.kernel, 1, place.y));
+        Stencil {
+            first: [x.first, y.first],
+            width: kernel::width(self.kernel),
+            weight: [x.weight, y.weight],
+            gradient: [x.gradient, y.gradient],
+        }
+    }
+
+    /// The same along one axis; `kernel` is that of the lattice, its derivatives are per metre.
+    #[inline(always)]
+    pub(super) fn axis_stencil(&self, kernel: Kernel, axis: usize, place: f64) -> AxisStencil {
         let grid = &self.grid;
         let inverse = 1.0 / grid.cell_size;
-        let x = (place - grid.origin) * inverse;
-        let mut stencil = Stencil::new(self.kernel, self.half_size, [x.x, x.y], inverse);
-        if stencil.width == 2 {
+        let mut stencil = kernel::axis_stencil(kernel, self.half_size, (place - grid.origin[axis]) * inverse);
+        for gradient in &mut stencil.gradient {
+            *gradient *= inverse;
+        }
+        if kernel == Kernel::Bilinear {
             // Exactly on a grid line a particle has a gradient, but no weight, at the nodes beyond; were it alone
             // there, they would have neither mass nor velocity.
-            for weight in &mut stencil.weight {
-                weight[1] = weight[1].max(LEAST_WEIGHT);
-                weight[0] = 1.0 - weight[1];
-            }
+            stencil.weight[1] = stencil.weight[1].max(LEAST_WEIGHT);
+            stencil.weight[0] = 1.0 - stencil.weight[1];
         }
         stencil
     }
@@ -231,9 +302,8 @@ impl Lattice {
         bands.map(|band| (band, self.grid.nodes_reached_from(band)))
     }
 
-    /// The particles whose lowest nodes are in a band, row by row.
+    /// The particles whose lowest nodes are in a band.
     pub(super) fn particles_of_band(&self, band: usize) -> &[u32] {
-        let rows = &self.order.first;
-        &self.order.particles[rows[band * BAND] as usize..rows[(band + 1) * BAND] as usize]
+        self.order.of_nodes(self.grid.nodes_of_band(band))
     }
 }

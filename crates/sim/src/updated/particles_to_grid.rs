@@ -8,6 +8,7 @@ use super::lattice::Lattice;
 use super::nodes::Nodes;
 use super::points::Points;
 use super::setup::Setup;
+use super::shares::{BATCH, Carried, Shares};
 use crate::grid::walker::Walker;
 use crate::grid::{kernel, pieces};
 use crate::threads::prelude::*;
@@ -23,7 +24,7 @@ pub(super) struct ToGrid<'a> {
 }
 
 /// The nodes that the particles of one band reach.
-struct Piece<'a> {
+pub(super) struct Piece<'a> {
     /// Index of the band.
     band: usize,
     /// Its first node.
@@ -31,6 +32,20 @@ struct Piece<'a> {
     mass: &'a mut [f64],
     momentum: [&'a mut [f64]; 2],
     force: [&'a mut [f64]; 2],
+}
+
+impl Piece<'_> {
+    /// Adds mass, momentum and force, along x and y each, to the nodes from `node` on.
+    #[inline(always)]
+    pub(super) fn add<const L: usize>(&mut self, node: usize, [mass, px, py, fx, fy]: &[[f64; L]; 5]) {
+        let at = node - self.start;
+        add(self.mass, at, mass);
+        let ([own_px, own_py], [own_fx, own_fy]) = (&mut self.momentum, &mut self.force);
+        add(own_px, at, px);
+        add(own_py, at, py);
+        add(own_fx, at, fx);
+        add(own_fy, at, fy);
+    }
 }
 
 /// The same, for the momentum alone.
@@ -46,15 +61,21 @@ pub(super) fn first<const L: usize>(all: &[f64; kernel::MAX_WIDTH]) -> [f64; L] 
     std::array::from_fn(|a| all[a])
 }
 
-/// From a particle at `place` to each of the nodes of its stencil along one axis, and to those beyond [m].
+/// From a particle at `place` to node `a` of its stencil along one axis, or to one beyond it [m].
+#[inline(always)]
+pub(super) fn arm(first: i32, a: usize, origin: f64, cell_size: f64, place: f64) -> f64 {
+    (origin - place) + f64::from(first + a as i32) * cell_size
+}
+
+/// The same for each node.
 #[inline(always)]
 pub(super) fn arms<const L: usize>(first: i32, origin: f64, cell_size: f64, place: f64) -> [f64; L] {
-    std::array::from_fn(|a| (origin - place) + f64::from(first + a as i32) * cell_size)
+    std::array::from_fn(|a| arm(first, a, origin, cell_size, place))
 }
 
 /// Adds `added` to the numbers from `at` on. What is beyond the stencil is 0, and may be beyond the last node.
 #[inline(always)]
-fn add<const L: usize>(values: &mut [f64], at: usize, added: [f64; L]) {
+fn add<const L: usize>(values: &mut [f64], at: usize, added: &[f64; L]) {
     let values = &mut values[at..];
     match values.first_chunk_mut::<L>() {
         Some(values) => {
@@ -64,44 +85,6 @@ fn add<const L: usize>(values: &mut [f64], at: usize, added: [f64; L]) {
         }
         None => values.iter_mut().zip(added).for_each(|(value, added)| *value += added),
     }
-}
-
-/// Particles whose share is worked out before any of it goes to the grid. Between the two it lies in memory, where
-/// neighbouring numbers are read at once.
-const BATCH: usize = 32;
-
-/// What a particle sends to the rows of its stencil.
-#[derive(Clone, Copy)]
-struct Share<const L: usize> {
-    /// First node of each row.
-    rows: [usize; kernel::MAX_WIDTH],
-    /// Weights [–] and their derivatives [1/m] along x.
-    x: [f64; L],
-    dx: [f64; L],
-    /// Mass times the weight of each row [kg/m].
-    mass: [f64; kernel::MAX_WIDTH],
-    /// Weight and derivative of each row, along y.
-    y: [f64; kernel::MAX_WIDTH],
-    dy: [f64; kernel::MAX_WIDTH],
-    /// Velocity over the columns, and what is added to it in each row [m/s]; x and y apart.
-    velocity: [[f64; L]; 2],
-    turn: [[f64; kernel::MAX_WIDTH]; 2],
-    /// V_p0 τ_p [N].
-    tension: [[f64; 2]; 2],
-}
-
-impl<const L: usize> Share<L> {
-    const NONE: Self = Self {
-        rows: [0; kernel::MAX_WIDTH],
-        x: [0.0; L],
-        dx: [0.0; L],
-        mass: [0.0; kernel::MAX_WIDTH],
-        y: [0.0; kernel::MAX_WIDTH],
-        dy: [0.0; kernel::MAX_WIDTH],
-        velocity: [[0.0; L]; 2],
-        turn: [[0.0; kernel::MAX_WIDTH]; 2],
-        tension: [[0.0; 2]; 2],
-    };
 }
 
 /// The particles of one band that no crack divides, for a kernel of `W` nodes along an axis, `L` numbers side by side.
@@ -130,84 +113,17 @@ fn band_to_grid<const W: usize, const L: usize, const AFFINE: bool>(
     piece: &mut Piece<'_>,
 ) {
     let mut walker = Walker::new(&lattice.grid);
-    let mut shares = [Share::<L>::NONE; BATCH];
+    let (mut carried, mut shares) = (Carried::NONE, Shares::<W, L>::NONE);
     for particles in lattice.particles_of_band(piece.band).chunks(BATCH) {
         let mut count = 0;
         for &p in particles {
-            let p = p as usize;
-            if lattice.stencils.of(p).is_none()
-                && let Some(share) = share::<W, L, AFFINE>(setup, points, lattice, &mut walker, p)
-            {
-                shares[count] = share;
+            if lattice.stencils.of(p as usize).is_none() {
+                carried.put::<AFFINE>(count, setup, points, p as usize);
                 count += 1;
             }
         }
-        for share in &shares[..count] {
-            send_share::<W, L>(share, piece);
-        }
-    }
-}
-
-/// What an undivided particle sends; none where its nodes do not exist, which the grid has been laid for.
-#[inline(always)]
-fn share<const W: usize, const L: usize, const AFFINE: bool>(
-    setup: &Setup,
-    points: &Points,
-    lattice: &Lattice,
-    walker: &mut Walker<'_>,
-    p: usize,
-) -> Option<Share<L>> {
-    let (point, grid) = (&points.point[p], &lattice.grid);
-    let stencil = lattice.stencil(point.position);
-    let rows = walker.rows(stencil.first, W)?;
-    let m = setup.particles.mass[p];
-    let tension = points.stress_times_volume(setup, p, point);
-    let mut share = Share {
-        rows,
-        x: first(&stencil.weight[0]),
-        dx: first(&stencil.gradient[0]),
-        mass: stencil.weight[1].map(|weight| m * weight),
-        y: stencil.weight[1],
-        dy: stencil.gradient[1],
-        velocity: [[point.velocity.x; L], [point.velocity.y; L]],
-        turn: [[0.0; kernel::MAX_WIDTH]; 2],
-        tension: [[tension.m11, tension.m12], [tension.m21, tension.m22]],
-    };
-    if AFFINE {
-        let arms_x: [f64; L] = arms(stencil.first[0], grid.origin.x, grid.cell_size, point.position.x);
-        let arms_y: [f64; kernel::MAX_WIDTH] = arms(stencil.first[1], grid.origin.y, grid.cell_size, point.position.y);
-        for axis in 0..2 {
-            let affine = &points.affine[p];
-            share.velocity[axis] = arms_x.map(|arm| point.velocity[axis] + affine[(axis, 0)] * arm);
-            share.turn[axis] = arms_y.map(|arm| affine[(axis, 1)] * arm);
-        }
-    }
-    Some(share)
-}
-
-/// Sends the share of a particle to the nodes of a piece.
-#[inline(always)]
-fn send_share<const W: usize, const L: usize>(share: &Share<L>, piece: &mut Piece<'_>) {
-    let Share { x, dx, .. } = share;
-    for b in 0..W {
-        let at = share.rows[b] - piece.start;
-        let mut mass = [0.0; L];
-        for a in 0..L {
-            mass[a] = share.mass[b] * x[a];
-        }
-        add(piece.mass, at, mass);
-        for axis in 0..2 {
-            let (velocity, turn) = (&share.velocity[axis], share.turn[axis][b]);
-            // f_i −= V_p0 τ_p ∇w_ip.
-            let (t1, t2) = (-share.tension[axis][0] * share.y[b], -share.tension[axis][1] * share.dy[b]);
-            let (mut momentum, mut force) = ([0.0; L], [0.0; L]);
-            for a in 0..L {
-                momentum[a] = mass[a] * (velocity[a] + turn);
-                force[a] = t1 * dx[a] + t2 * x[a];
-            }
-            add(piece.momentum[axis], at, momentum);
-            add(piece.force[axis], at, force);
-        }
+        shares.fill::<AFFINE>(&carried, lattice);
+        shares.send::<AFFINE>(count, &mut walker, piece);
     }
 }
 
