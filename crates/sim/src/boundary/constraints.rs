@@ -2,8 +2,14 @@
 //!
 //! A constraint Σ w_f v_f = V acts on its fields by impulses λ w_f: the motion stays that of the lattice with as many
 //! fewer degrees of freedom (Lagrange multipliers). There is no stiffness to choose, and no frequency rises. λ comes
-//! from a Cholesky decomposition of W M⁻¹ Wᵀ within its envelope: constraints are in the order of their places along an
-//! edge, so that each is tied to few before it.
+//! from a Cholesky decomposition of G = W M⁻¹ Wᵀ within its envelope: constraints are in the order of their places
+//! along an edge, so that each is tied to few before it.
+//!
+//! Around a corner constraints may say the same but for rounding, and impulses would be anything: what is held would
+//! gain energy with every step. So the diagonal D of G is raised by a part ε, and what that leaves is held by further
+//! rounds (iterated regularization of Tikhonov, three terms of it): λ = Σ_k ((G + ε D)⁻¹ ε D)^k (G + ε D)⁻¹ r. A motion
+//! that constraints know of by a part μ keeps (ε/(μ + ε))³ of itself, so that none grows; what they know of by more
+//! than a thousandth is held to rounding.
 
 use super::edges::EdgeMean;
 use super::supports::contradiction;
@@ -28,8 +34,10 @@ pub(crate) struct Held {
     pub(crate) fields: Vec<u32>,
 }
 
-/// A constraint that says no more than those before it, but for this part of its own, is left out.
-const DEPENDENT: f64 = 1e-9;
+/// The part ε by which the diagonal is raised. Rounding is 1e-8 of that.
+const RAISED: f64 = 1e-8;
+/// The rounds in which all is held.
+const ROUNDS: u32 = 3;
 
 /// Constraints along one axis.
 #[derive(Debug, Clone, Default)]
@@ -40,6 +48,8 @@ pub(crate) struct ConstraintSystem {
     means: Vec<Constraint>,
     /// Change of velocity of each entry of each of the means by an impulse of 1 [m/kg].
     responses: Vec<Vec<f64>>,
+    /// ε D of each of the means [1/kg].
+    raised: Vec<f64>,
     /// Cholesky factor of the means, row by row.
     rows: Vec<EnvelopeRow>,
 }
@@ -63,8 +73,8 @@ impl EnvelopeRow {
 }
 
 impl ConstraintSystem {
-    /// Prepares `constraints` for fields of these inverse masses [m/kg]. Of several that say the same, the first ones
-    /// are kept.
+    /// Prepares `constraints` for fields of these inverse masses [m/kg]. Of several of the same single field the first
+    /// one is kept; other constraints that say the same share what it takes.
     pub(crate) fn new(constraints: Vec<Constraint>, inverse_mass: &[f64]) -> Self {
         let mut system = Self::default();
         let mut is_fixed = BTreeMap::new();
@@ -79,27 +89,33 @@ impl ConstraintSystem {
                 if is_fixed.contains_key(&field) { 0.0 } else { w * inverse_mass[field as usize] }
             };
             let responses: Vec<f64> = constraint.entries.iter().map(response).collect();
-            if let Some(row) = system.row(&constraint, &responses, &of_field) {
-                for &(field, _) in &constraint.entries {
-                    of_field.entry(field).or_default().push(system.means.len());
-                }
-                system.rows.push(row);
-                system.means.push(constraint);
-                system.responses.push(responses);
+            let own: f64 = constraint.entries.iter().zip(&responses).map(|((_, w), response)| w * response).sum();
+            // Fields that are fixed, all of them: there is nothing to hold.
+            if own <= 0.0 {
+                continue;
             }
+            let row = system.row(&constraint, &responses, own, &of_field);
+            for &(field, _) in &constraint.entries {
+                of_field.entry(field).or_default().push(system.means.len());
+            }
+            system.rows.push(row);
+            system.means.push(constraint);
+            system.responses.push(responses);
+            system.raised.push(RAISED * own);
         }
         system
     }
 
-    /// The row of one more constraint; none when it depends on those before. `of_field`: which of them have each field.
+    /// The row of one more constraint, with its `own` entry on the diagonal of G. `of_field`: which of those before
+    /// have each field.
     fn row(
         &self,
         constraint: &Constraint,
         responses: &[f64],
+        own: f64,
         of_field: &BTreeMap<u32, Vec<usize>>,
-    ) -> Option<EnvelopeRow> {
+    ) -> EnvelopeRow {
         let count = self.means.len();
-        let own: f64 = constraint.entries.iter().zip(responses).map(|((_, w), response)| w * response).sum();
         let tied = constraint.entries.iter().filter_map(|(field, _)| of_field.get(field)?.first());
         let first = tied.min().copied().unwrap_or(count);
         // What an impulse of it does to the means before it.
@@ -118,8 +134,8 @@ impl ConstraintSystem {
         }
         let left = own - x[first..].iter().map(|l| l * l).sum::<f64>();
         let mut values = x.split_off(first);
-        values.push(left.max(0.0).sqrt());
-        (left > DEPENDENT * own).then_some(EnvelopeRow { first, values })
+        values.push((left.max(0.0) + RAISED * own).sqrt());
+        EnvelopeRow { first, values }
     }
 
     /// Whether nothing is held.
@@ -152,6 +168,12 @@ impl ConstraintSystem {
         };
         let mut impulses: Vec<f64> = self.means.iter().map(missing).collect();
         self.solve(&mut impulses);
+        let mut left = impulses.clone();
+        for _ in 1..ROUNDS {
+            left.iter_mut().zip(&self.raised).for_each(|(left, raised)| *left *= raised);
+            self.solve(&mut left);
+            impulses.iter_mut().zip(&left).for_each(|(impulse, left)| *impulse += left);
+        }
         for ((constraint, responses), &impulse) in self.means.iter().zip(&self.responses).zip(&impulses) {
             // Of a field that is fixed nothing moves, and nothing acts on it.
             let mut part = 0.0;
@@ -163,7 +185,13 @@ impl ConstraintSystem {
         }
     }
 
-    /// Solves L Lᵀ x = b in place.
+    /// What each of the means is.
+    #[cfg(test)]
+    pub(crate) fn speeds(&self, velocity: &[f64]) -> impl Iterator<Item = f64> {
+        self.means.iter().map(|c| c.entries.iter().map(|&(field, w)| w * velocity[field as usize]).sum())
+    }
+
+    /// Solves (G + ε D) x = b in place.
     fn solve(&self, x: &mut [f64]) {
         for (k, row) in self.rows.iter().enumerate() {
             x[k] = (x[k] - row.dot(x, k)) / row.diagonal();
