@@ -37,10 +37,10 @@ impl<'a> Walker<'a> {
         let [i, j] = lowest;
         let (band, row) = (band_of(j), row_in_band(j));
         let lower = self.span(band, i, width)?;
-        let at = lower.node + (i - lower.first) as usize + row * lower.width;
+        let (at, step) = (lower.node + (i - lower.first) as usize + row * lower.width, lower.width);
         let mut rows = [0; MAX_WIDTH];
         for b in 0..width {
-            rows[b] = at + b * lower.width;
+            rows[b] = at + b * step;
         }
         if row + width > BAND {
             let upper = self.span(band + 1, i, width)?;
@@ -57,22 +57,28 @@ impl<'a> Walker<'a> {
     pub(crate) fn lowest_node(&mut self, lowest: [i32; 2], width: usize) -> Option<usize> {
         let [i, j] = lowest;
         let (band, row) = (band_of(j), row_in_band(j));
-        let lower = self.span(band, i, width)?;
         if row + width > BAND {
             self.span(band + 1, i, width)?;
         }
+        let lower = self.span(band, i, width)?;
         Some(lower.node + (i - lower.first) as usize + row * lower.width)
     }
 
     /// The span of `band` that holds `width` columns from `column` on.
     #[inline(always)]
-    fn span(&mut self, band: i32, column: i32, width: usize) -> Option<Found> {
+    fn span(&mut self, band: i32, column: i32, width: usize) -> Option<&Found> {
         let last = &mut self.found[(band & 1) as usize];
-        let fits = |found: &Found| found.band == band && found.first <= column && column + width as i32 <= found.end;
-        if !fits(last) {
-            *last = self.grid.find(band, column)?;
+        if !last.holds(band, column, width) {
+            *last = self.grid.find(band, column).filter(|found| found.holds(band, column, width))?;
         }
-        Some(*last).filter(fits)
+        Some(last)
+    }
+}
+
+impl Found {
+    #[inline(always)]
+    fn holds(&self, band: i32, column: i32, width: usize) -> bool {
+        self.band == band && self.first <= column && column + width as i32 <= self.end
     }
 }
 

@@ -7,6 +7,7 @@ use super::nodes::Nodes;
 use super::plastic::PlasticPart;
 use super::points::{MaterialPoint, Motion, Points};
 use super::setup::Setup;
+use super::survey::{Survey, SurveyOfPart};
 use crate::SimulationError;
 use crate::boundary::collider::PlacedObstacle;
 use crate::threads::prelude::*;
@@ -14,7 +15,7 @@ use crate::wide::{Loop, run_widest};
 use fissure_scene::{Kernel, Matrix, Point, Transfer};
 
 /// Particles that one task takes.
-const CHUNK: usize = 1024;
+const CHUNK: usize = 512;
 
 /// A task: neighbouring particles and what they carry.
 struct Task<'a> {
@@ -23,14 +24,19 @@ struct Task<'a> {
     affine: &'a mut [Matrix],
     plastic: &'a mut [PlasticPart],
     motion: &'a mut [Motion],
+    /// Where their lowest nodes are after the step, and their numbers.
+    places: &'a mut [[i32; 2]],
+    nodes: &'a mut [u32],
 }
 
 /// What a task reports.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Report {
     /// Work of colliders on particles [J/m].
     work: f64,
     failure: Option<Failure>,
+    /// Where its particles are after the step.
+    survey: Survey,
 }
 
 /// A particle with which the run cannot go on.
@@ -78,29 +84,42 @@ pub(super) struct ParticleStep<'a> {
 }
 
 impl ParticleStep<'_> {
-    /// Moves all particles; gives the work of colliders on them [J/m].
+    /// Moves all particles; gives the work of colliders on them [J/m] and where they are then, with their `lowest`
+    /// nodes.
     ///
     /// # Errors
     /// When a particle is no longer finite, is turned inside out, or moves by more than a cell.
-    pub(super) fn advance(&self, points: &mut Points) -> Result<f64, Failure> {
+    pub(super) fn advance(
+        &self,
+        points: &mut Points,
+        lowest: &mut (Vec<[i32; 2]>, Vec<u32>),
+    ) -> (Result<f64, Failure>, Survey) {
         match self.from.lattice.kernel {
-            Kernel::Bilinear => self.all_tasks::<2>(points),
-            Kernel::Gimp | Kernel::Quadratic => self.all_tasks::<3>(points),
-            Kernel::Cubic => self.all_tasks::<4>(points),
+            Kernel::Bilinear => self.all_tasks::<2>(points, lowest),
+            Kernel::Gimp | Kernel::Quadratic => self.all_tasks::<3>(points, lowest),
+            Kernel::Cubic => self.all_tasks::<4>(points, lowest),
         }
     }
 
     /// Cuts what all particles carry into tasks and runs them.
-    fn all_tasks<const W: usize>(&self, all: &mut Points) -> Result<f64, Failure> {
+    fn all_tasks<const W: usize>(
+        &self,
+        all: &mut Points,
+        (places, nodes): &mut (Vec<[i32; 2]>, Vec<u32>),
+    ) -> (Result<f64, Failure>, Survey) {
         let mut affine = all.affine.chunks_mut(CHUNK);
         let mut plastic = all.plastic.chunks_mut(CHUNK);
         let mut motion = all.motion.chunks_mut(CHUNK);
+        let mut places = places.chunks_mut(CHUNK);
+        let mut nodes = nodes.chunks_mut(CHUNK);
         let cut = |(k, points)| Task {
             first: k * CHUNK,
             points,
             affine: affine.next().unwrap_or_default(),
             plastic: plastic.next().unwrap_or_default(),
             motion: motion.next().unwrap_or_default(),
+            places: places.next().unwrap_or_default(),
+            nodes: nodes.next().unwrap_or_default(),
         };
         let tasks: Vec<Task<'_>> = all.point.chunks_mut(CHUNK).enumerate().map(cut).collect();
         let run = |task: Task<'_>| run_widest(TaskOfStep::<W> { step: self, task });
@@ -109,11 +128,12 @@ impl ParticleStep<'_> {
         } else {
             tasks.into_iter().map(run).collect()
         };
-        let mut work = 0.0;
+        let (mut work, mut survey) = (0.0, Survey::NONE);
         for report in &reports {
             work += report.work;
+            survey = survey.with(report.survey);
         }
-        reports.iter().find_map(|report| report.failure).map_or(Ok(work), Err)
+        (reports.iter().find_map(|report| report.failure).map_or(Ok(work), Err), survey)
     }
 }
 
@@ -148,7 +168,7 @@ fn run_task<const W: usize>(
     let mut walker = from.walker();
     let mut wanted = Wanted::by(settings.transfer, settings.kernel);
     wanted.before |= !task.motion.is_empty();
-    let mut report = Report::default();
+    let (mut work, mut failure) = (0.0, None);
     let mut batch = Batch::<W>::NONE;
     for k in 0..task.points.len() {
         if k % BATCH == 0 {
@@ -183,19 +203,20 @@ fn run_task<const W: usize>(
             point.velocity = obstacle.resolve(before, point.position);
             if point.velocity != before {
                 let impulse = (point.velocity - before) * setup.particles.mass[p];
-                report.work += impulse.dot(&obstacle.velocity(point.position));
+                work += impulse.dot(&obstacle.velocity(point.position));
             }
             advection = obstacle.resolve(advection, point.position);
         }
         let motion = advection * time_step;
         point.position += motion;
         let ratio = 1.0 + crate::volume_change(&point.elastic_gradient);
-        if report.failure.is_none() {
-            report.failure = cause_of_failure(ratio, motion.norm_squared(), lattice.grid.cell_size)
+        if failure.is_none() {
+            failure = cause_of_failure(ratio, motion.norm_squared(), lattice.grid.cell_size)
                 .map(|cause| Failure { particle: p, cause });
         }
     }
-    report
+    let Task { points, places, nodes, .. } = task;
+    Report { work, failure, survey: SurveyOfPart { lattice, points, places, nodes }.run() }
 }
 
 /// Why a particle with this volume ratio [–] that moves by this distance squared [m²] through cells of size `h` [m]

@@ -2,13 +2,14 @@
 
 use super::points::MaterialPoint;
 use super::setup::Setup;
+use super::survey::{PART, Survey, SurveyOfPart};
 use crate::crack::division::{Division, TipCut};
 use crate::grid::Grid;
 use crate::grid::entries::{Entries, Entry};
 use crate::grid::fields::Fields;
 use crate::grid::kernel::{self, AxisStencil, Stencil};
-use crate::grid::walker::Walker;
 use crate::threads::prelude::*;
+use crate::wide::run_widest;
 use fissure_scene::{Kernel, Point, Vector};
 use std::ops::Range;
 
@@ -36,20 +37,30 @@ pub(super) struct Lattice {
     pub(super) fields: Fields,
     /// Stencils of the particles that cracks divide; those of others follow from their places.
     pub(super) stencils: Entries,
+    /// Where the particles are now, when that was found as they moved there.
+    pub(super) ahead: Option<Survey>,
 }
 
 /// Particles sorted by the lowest node that they reach, row by row and along each row; those of one node stay in the
 /// order of their numbers.
 #[derive(Debug, Default)]
 pub(super) struct Order {
-    /// Lowest node of each particle.
-    node: Vec<u32>,
+    /// Where the lowest node of each particle is, and its number.
+    pub(super) place: Vec<[i32; 2]>,
+    pub(super) node: Vec<u32>,
+    /// Whether these are of the nodes that the grid has now.
+    is_of_grid: bool,
     /// First place in `particles` of each node; two more at the end.
     first: Vec<u32>,
     particles: Vec<u32>,
 }
 
 impl Order {
+    /// Whether the lowest nodes that are noted are of the nodes that the grid has now.
+    pub(super) fn is_of_grid(&self) -> bool {
+        self.is_of_grid
+    }
+
     /// Sorts by `node`, which is below `nodes`.
     fn sort(&mut self, nodes: usize) {
         self.first.clear();
@@ -78,68 +89,6 @@ impl Order {
     }
 }
 
-/// Particles that one task looks at.
-const PART: usize = 4096;
-
-/// Where particles are.
-#[derive(Debug, Clone, Copy)]
-struct Survey {
-    /// The box around them [m].
-    low: Point,
-    high: Point,
-    /// Whether the grid has all nodes that they reach.
-    has_nodes: bool,
-    /// Whether any of them has another lowest node than before.
-    has_changed: bool,
-}
-
-impl Survey {
-    /// Of no particle.
-    const NONE: Self = Self {
-        low: Point::new(f64::INFINITY, f64::INFINITY),
-        high: Point::new(f64::NEG_INFINITY, f64::NEG_INFINITY),
-        has_nodes: true,
-        has_changed: false,
-    };
-
-    /// Of the particles of both.
-    fn with(self, other: Self) -> Self {
-        Self {
-            low: self.low.inf(&other.low),
-            high: self.high.sup(&other.high),
-            has_nodes: self.has_nodes && other.has_nodes,
-            has_changed: self.has_changed || other.has_changed,
-        }
-    }
-}
-
-/// Finds the lowest nodes of stencils on the lattice of a grid.
-#[derive(Debug, Clone, Copy)]
-struct Lowest {
-    kernel: Kernel,
-    half_size: f64,
-    origin: Point,
-    inverse_cell_size: f64,
-}
-
-impl Lowest {
-    fn on(lattice: &Lattice) -> Self {
-        Self {
-            kernel: lattice.kernel,
-            half_size: lattice.half_size,
-            origin: lattice.grid.origin,
-            inverse_cell_size: 1.0 / lattice.grid.cell_size,
-        }
-    }
-
-    #[inline(always)]
-    fn of(&self, place: Point) -> [i32; 2] {
-        let x = (place - self.origin) * self.inverse_cell_size;
-        let first = |x: f64| kernel::axis_stencil(self.kernel, self.half_size, x).first;
-        [first(x.x), first(x.y)]
-    }
-}
-
 impl Lattice {
     /// No nodes yet.
     pub(super) fn new(setup: &Setup) -> Self {
@@ -159,6 +108,7 @@ impl Lattice {
             ),
             fields: Fields::default(),
             stencils: Entries::default(),
+            ahead: None,
         }
     }
 
@@ -166,7 +116,7 @@ impl Lattice {
     /// as to hold all particles.
     pub(super) fn lay(&mut self, setup: &Setup, points: &[MaterialPoint]) -> bool {
         // Most steps need no other nodes than the one before.
-        let before = self.survey(setup, points);
+        let before = self.ahead.take().unwrap_or_else(|| self.survey(setup, points));
         let (h, anchor) = (setup.scene.cell_size, setup.particles.anchor);
         let Some(grid) = Grid::around(anchor, before.low, before.high, h, MARGIN) else {
             return false;
@@ -175,8 +125,11 @@ impl Lattice {
         let is_same_lattice = self.grid.take_nodes(&mut old);
         let mut now = before;
         if !(is_same_lattice && before.has_nodes) {
-            let lowest = Lowest::on(self);
-            self.grid.lay(points.iter().map(|p| lowest.of(p.position)), kernel::width(self.kernel), ROOM);
+            let mut grid = std::mem::take(&mut self.grid);
+            (self.grid.origin, self.grid.cell_size) = (grid.origin, grid.cell_size);
+            grid.lay(points.iter().map(|p| self.stencil(p.position).first), kernel::width(self.kernel), ROOM);
+            self.grid = grid;
+            self.order.is_of_grid = false;
             now = self.survey(setup, points);
             if !now.has_nodes {
                 return false;
@@ -193,35 +146,34 @@ impl Lattice {
 
     /// Finds the lowest node of each particle.
     fn survey(&mut self, setup: &Setup, points: &[MaterialPoint]) -> Survey {
-        let (lowest, width) = (Lowest::on(self), kernel::width(self.kernel));
-        self.order.node.resize(points.len(), 0);
-        let grid = &self.grid;
-        let survey = |(nodes, points): (&mut [u32], &[MaterialPoint])| {
-            let (mut of_part, mut walker) = (Survey::NONE, Walker::new(grid));
-            for (node, point) in nodes.iter_mut().zip(points) {
-                let place = point.position;
-                of_part.low = Point::new(of_part.low.x.min(place.x), of_part.low.y.min(place.y));
-                of_part.high = Point::new(of_part.high.x.max(place.x), of_part.high.y.max(place.y));
-                if of_part.has_nodes {
-                    match walker.lowest_node(lowest.of(place), width) {
-                        Some(now) => {
-                            of_part.has_changed |= *node != now as u32;
-                            *node = now as u32;
-                        }
-                        None => of_part.has_nodes = false,
-                    }
-                }
-            }
-            of_part
-        };
-        let parts: Vec<(&mut [u32], &[MaterialPoint])> =
-            self.order.node.chunks_mut(PART).zip(points.chunks(PART)).collect();
+        let (mut places, mut nodes) = self.take_lowest(points.len());
+        let parts = points.chunks(PART).zip(places.chunks_mut(PART)).zip(nodes.chunks_mut(PART));
+        let lattice = &*self;
+        let parts: Vec<SurveyOfPart<'_>> =
+            parts.map(|((points, places), nodes)| SurveyOfPart { lattice, points, places, nodes }).collect();
         let parts: Vec<Survey> = if setup.is_parallel() {
-            parts.into_par_iter().map(survey).collect()
+            parts.into_par_iter().map(run_widest).collect()
         } else {
-            parts.into_iter().map(survey).collect()
+            parts.into_iter().map(run_widest).collect()
         };
-        parts.into_iter().fold(Survey::NONE, Survey::with)
+        let survey = parts.into_iter().fold(Survey::NONE, Survey::with);
+        self.put_lowest(places, nodes, survey.has_nodes);
+        survey
+    }
+
+    /// Takes out places and numbers of the lowest nodes of so many `particles`, to be looked at anew.
+    pub(super) fn take_lowest(&mut self, particles: usize) -> (Vec<[i32; 2]>, Vec<u32>) {
+        let order = &mut self.order;
+        let (mut places, mut nodes) = (std::mem::take(&mut order.place), std::mem::take(&mut order.node));
+        order.is_of_grid &= places.len() == particles;
+        places.resize(particles, [0; 2]);
+        nodes.resize(particles, 0);
+        (places, nodes)
+    }
+
+    /// Puts them back; `are_all` tells whether the grid has all of them.
+    pub(super) fn put_lowest(&mut self, places: Vec<[i32; 2]>, nodes: Vec<u32>, are_all: bool) {
+        (self.order.place, self.order.node, self.order.is_of_grid) = (places, nodes, are_all);
     }
 
     /// The stencil of a particle at `place` that no crack divides.

@@ -29,9 +29,10 @@ impl Updated {
         let saved = size_of::<MaterialPoint>()
             + if_any(has_affine(scene), size_of::<Matrix>())
             + if_any(is_plastic(scene), size_of::<PlasticPart>());
-        // Its lowest node and its place in the order of these; its motion and its row among those that cracks divide.
+        // Its lowest node, where that is, and its place in the order of these; its motion and its row among those that
+        // cracks divide.
         let particle = saved
-            + 2 * size_of::<u32>()
+            + 4 * size_of::<u32>()
             + if_any(has_cracks, size_of::<Motion>() + size_of::<u32>())
             + if_any(sends_back, size_of::<Vector>());
         // With where the particles of a node begin in that order.

@@ -45,6 +45,7 @@ mod shares;
 mod snapshot;
 mod stability;
 mod supports;
+mod survey;
 #[cfg(test)]
 mod tests;
 mod tracer;
@@ -262,8 +263,12 @@ impl Updated {
         }
         points.motion.resize(if has_cracks { points.point.len() } else { 0 }, Motion::default());
         let held = supports.places(points);
+        let mut lowest = lattice.take_lowest(points.point.len());
         let step = ParticleStep { from: FromGrid { setup, lattice, nodes }, obstacles, time_step };
-        let work = step.advance(points);
+        let (work, survey) = step.advance(points, &mut lowest);
+        lattice.put_lowest(lowest.0, lowest.1, survey.has_nodes);
+        // What supports hold is put where it belongs after that.
+        lattice.ahead = held.iter().all(Vec::is_empty).then_some(survey);
         self.external_work += supports.hold_particles(setup, &held, held_step, points, reactions);
         self.external_work +=
             work.map_err(|failure| failure.at(points.point[failure.particle].position, time + time_step))?;

@@ -25,9 +25,13 @@ impl Setup {
     }
 
     /// Elastic constants of the material of a particle.
-    #[inline]
+    #[inline(always)]
     pub(super) fn elastic_of(&self, particle: usize) -> &Elastic {
-        &self.elastic[self.particles.material[particle] as usize]
+        match self.elastic.as_slice() {
+            // Where all are of one material none is asked for its own.
+            [all] => all,
+            each => &each[self.particles.material[particle] as usize],
+        }
     }
 
     /// Whether loops over particles go to several threads.

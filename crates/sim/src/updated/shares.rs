@@ -62,8 +62,10 @@ impl Carried {
                 self.affine[axis][along][k] = affine[(axis, along)];
             }
         }
-        self.mass[k] = setup.particles.mass[p];
-        self.volume[k] = setup.particles.volume[p];
+        let volume = setup.particles.volume[p];
+        self.volume[k] = volume;
+        // As it was laid, without a look at yet another list.
+        self.mass[k] = volume * setup.elastic_of(p).density;
         (self.moduli[0][k], self.moduli[1][k]) = (mu, lambda);
     }
 }
