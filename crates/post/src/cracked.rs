@@ -128,7 +128,7 @@ pub(crate) fn whole_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) 
     let solids = Solids::new(scene, frame, options, &grids);
     for (body, &grid) in (0..).zip(&grids) {
         let rings = frame.outlines.iter().filter(|o| o.body == body);
-        let sources = rings.flat_map(|outline| outline_edges(outline, grid)).collect();
+        let sources = rings.flat_map(|outline| outline_edges(scene, outline, grid)).collect();
         let particles = &frame.particles;
         let of_body = (0..particles.len()).filter(|&p| particles.body[p] == body);
         let piece = of_body.map(|p| particles.piece[p]).min().unwrap_or(0);

@@ -1,5 +1,6 @@
 //! The boundary of a fragment as edges of the moved body.
 
+use crate::drawn_curve::tangents;
 use crate::history::History;
 use crate::opening::arc_lengths;
 use crate::slot::Slot;
@@ -37,6 +38,8 @@ pub(crate) struct MovedLines<'a> {
     /// on the way back.
     ring_arcs: Vec<Vec<f64>>,
     crack_arcs: Vec<Vec<f64>>,
+    /// Directions at rest of the curve that was drawn, for each edge of each ring; of none where none is told of.
+    ring_tangents: Vec<Vec<[Vector; 2]>>,
     /// How far the faces of each crack are moved at each of its points.
     shifts: Vec<Vec<Shift>>,
     /// How each point of each crack came about, where that is asked for.
@@ -62,6 +65,7 @@ impl<'a> MovedLines<'a> {
             cracks,
             ring_arcs: frame.outlines.iter().map(|o| ring(&o.rest)).collect(),
             crack_arcs: frame.cracks.iter().map(|c| arc_lengths(&c.rest, first(c.crack))).collect(),
+            ring_tangents: frame.outlines.iter().map(|outline| tangents(scene, outline)).collect(),
             shifts,
             histories: None,
         }
@@ -81,12 +85,13 @@ impl<'a> MovedLines<'a> {
         (0..count)
             .map(|i| {
                 let (edge, [start, end]) = (&boundary[i], [corners[i], corners[(i + 1) % count]]);
-                let (arcs, histories) = (self.arcs(edge), self.histories(edge));
+                let (arcs, histories, tangents) = (self.arcs(edge), self.histories(edge), self.tangents(edge));
                 let carried = |k: usize, now: Now| Carried {
                     rest: edge.rest[k] + self.offset(edge, k),
                     velocity: now.velocity,
                     arc: arcs[k],
                     history: histories[k],
+                    tangent: tangents[k],
                 };
                 SourceEdge {
                     a: grid.snap(start.place),
@@ -196,6 +201,13 @@ impl<'a> MovedLines<'a> {
             }
             _ => [History::default(); 2],
         }
+    }
+
+    /// Direction at rest of the curve that was drawn, where an edge begins and ends.
+    fn tangents(&self, edge: &BoundaryEdge) -> [Vector; 2] {
+        let Line::Ring(i) = edge.line else { return [Vector::zeros(); 2] };
+        let [p, q] = self.ring_tangents[i].get(edge.points[0]).copied().unwrap_or_default();
+        edge.span.map(|part| p + part * (q - p))
     }
 
     /// Length at rest along the line, where an edge begins and ends [m].

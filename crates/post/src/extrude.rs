@@ -11,6 +11,10 @@ use crate::source::{Carried, SourceEdge};
 use crate::triangulate::Cap;
 use fissure_scene::{Point, Vector};
 
+/// Where a curve that was drawn turns by more than this there is a corner [rad]. Smooth joints of drawn curves are a
+/// degree or two off, as drawing programs and fonts round their control points.
+const CORNER: f64 = 0.1;
+
 /// How a polygon becomes a solid.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Extrusion<'a> {
@@ -115,7 +119,9 @@ impl Extrusion<'_> {
                 let before = (i > 0 || closed).then(|| &contour[(i + count - 1) % count]);
                 let after = (i + 1 < count || closed).then(|| &contour[(i + 1) % count]);
                 let post = |point, other, corner| {
-                    let (carried, normal) = (source.at(point), self.corner_normal(edge, other));
+                    let normal = self.corner_normal(edge, other, point);
+                    // Two chords of a curve tell its direction alike but for rounding; the normal knows it.
+                    let carried = Carried { tangent: Vector::zeros(), ..source.at(point) };
                     Post { point, carried, normal, drop: drop(corner) }
                 };
                 [post(edge.a, before, i), post(edge.b, after, i + 1)]
@@ -140,18 +146,24 @@ impl Extrusion<'_> {
         [first, first + 1]
     }
 
-    /// Normal of the wall on `edge` where it meets the wall on `other`: halfway between both when the corner is smooth.
-    fn corner_normal(&self, edge: &Edge, other: Option<&Edge>) -> Vector {
-        let own = wall_normal(edge);
+    /// Normal of the wall on `edge` at its end `point`, where it meets the wall on `other`: that of the curve that was
+    /// drawn, turned as the edge has turned; halfway between both walls when the corner is smooth.
+    fn corner_normal(&self, edge: &Edge, other: Option<&Edge>, point: GridPoint) -> Vector {
+        let turn = |edge: &Edge| self.source(edge).turn(point);
+        let own_turn = turn(edge);
+        let own = turned(wall_normal(edge), own_turn);
         let Some(other) = other else { return own };
-        let (source, other_source) = (self.source(edge), self.source(other));
+        let (source, other_source, other_turn) = (self.source(edge), self.source(other), turn(other));
+        let theirs = turned(wall_normal(other), other_turn);
         // At rest, so that no edge becomes sharp as the material bends; what has no length there counts as it is now.
         let sides = match [source, other_source].map(SourceEdge::direction_at_rest) {
-            [Some(own), Some(theirs)] => [own, theirs],
-            _ => [own, wall_normal(other)],
+            [Some(own), Some(theirs)] => [turned(own, own_turn), turned(theirs, other_turn)],
+            _ => [own, theirs],
         };
-        let smooth = source.slot == other_source.slot && sides[0].dot(&sides[1]) >= self.crease_angle.cos();
-        if smooth { (own + wall_normal(other)).normalize() } else { own }
+        let is_curve = own_turn.is_some() || other_turn.is_some();
+        let crease = if is_curve { self.crease_angle.min(CORNER) } else { self.crease_angle };
+        let smooth = source.slot == other_source.slot && sides[0].dot(&sides[1]) >= crease.cos();
+        if smooth { (own + theirs).normalize() } else { own }
     }
 
     pub(crate) fn source(&self, edge: &Edge) -> &SourceEdge {
@@ -167,6 +179,11 @@ pub(crate) struct Post {
     normal: Vector,
     /// How far from the caps it ends [m].
     drop: f64,
+}
+
+/// A direction turned counter-clockwise by an angle [rad], if there is one.
+fn turned(direction: Vector, angle: Option<f64>) -> Vector {
+    angle.map_or(direction, |angle| nalgebra::Rotation2::new(angle) * direction)
 }
 
 /// Outward unit normal of the wall on `edge`: to its right.

@@ -45,6 +45,7 @@ mod colliders;
 #[path = "../tests/common/mod.rs"]
 mod common;
 mod cracked;
+mod drawn_curve;
 mod edges;
 mod error;
 mod explode;

@@ -43,7 +43,7 @@ pub(crate) fn opening_edges(
             (face[i], velocity[i])
         };
         let history = histories.get(i).copied().unwrap_or_default();
-        (grid.snap(place), Carried { rest: crack.rest[i], velocity, arc: arcs[i], history })
+        (grid.snap(place), Carried { arc: arcs[i], history, ..Carried::within(crack.rest[i], velocity) })
     };
     let corners: Vec<_> = (0..count)
         .map(|i| corner(i, &crack.above, &crack.above_velocity))

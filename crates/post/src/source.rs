@@ -16,12 +16,14 @@ pub(crate) struct Carried {
     pub(crate) arc: f64,
     /// How the wall of a crack came about here.
     pub(crate) history: History,
+    /// Direction at rest of the curve that was drawn, along the ring; zero on lines and cracks.
+    pub(crate) tangent: Vector,
 }
 
 impl Carried {
     /// What the material at rest at `rest` carries that no wall stands on.
     pub(crate) fn within(rest: Point, velocity: Vector) -> Self {
-        Self { rest, velocity, arc: 0.0, history: History::default() }
+        Self { rest, velocity, arc: 0.0, history: History::default(), tangent: Vector::zeros() }
     }
 
     /// A part of the way, 0 to 1, from here to another point of the same line.
@@ -31,6 +33,7 @@ impl Carried {
             velocity: self.velocity + part * (other.velocity - self.velocity),
             arc: self.arc + part * (other.arc - self.arc),
             history: self.history.between(other.history, part),
+            tangent: self.tangent + part * (other.tangent - self.tangent),
         }
     }
 }
@@ -52,6 +55,16 @@ impl SourceEdge {
     /// Direction at rest; none without length.
     pub(crate) fn direction_at_rest(&self) -> Option<Vector> {
         (self.carried[1].rest - self.carried[0].rest).try_normalize(0.0)
+    }
+
+    /// Angle at rest from the edge to the curve that was drawn, at `point` on it, counter-clockwise [rad]; none where
+    /// no curve is told of, or where the edge has come to lie across it.
+    pub(crate) fn turn(&self, point: GridPoint) -> Option<f64> {
+        /// Chords are nearer to their curves; what takes the place of some of them may turn by more.
+        const MOST: f64 = 0.6;
+        let (along, tangent) = (self.direction_at_rest()?, self.at(point).tangent);
+        let turn = along.perp(&tangent).atan2(along.dot(&tangent));
+        (self.slot == Slot::Outside && tangent != Vector::zeros() && turn.abs() <= MOST).then_some(turn)
     }
 
     /// What is carried at `point` on the edge: linear between the ends, exactly theirs at the ends.

@@ -422,6 +422,61 @@ fn walls_are_smooth_below_the_crease_angle() {
     assert_eq!(walls().count(), 2 * (count + 1));
 }
 
+/// Truth: closed form, n ~ F⁻ᵀ N. Walls along an arc stand as the arc does, within .1 degrees, however coarse its
+/// chords are, and turn with the material; the side that was drawn straight is flat, up to the corners where both meet.
+#[test]
+fn walls_along_a_curve_have_its_normals() {
+    let count = 12;
+    let half = 0.5 * std::f64::consts::PI / count as f64;
+    let corner = |i: usize| Point::new((2.0 * half * i as f64).cos(), (2.0 * half * i as f64).sin());
+    let region = Region { exterior: (0..=count).map(corner).collect(), holes: Vec::new() };
+    let mut scene = scene(region.clone());
+    let straight = scene.clone();
+    scene.bodies[0].turns = vec![vec![[-half, half]; count]];
+    scene.bodies[0].turns[0].push([0.0; 2]);
+    let stretch = nalgebra::Matrix2::new(1.002, 0.0, 0.0, 0.999);
+    let moved = nalgebra::Rotation2::new(0.7).matrix() * stretch;
+    let back = moved.try_inverse().unwrap();
+    // Mouths are no corners of what was drawn: one is in the middle of a chord, one is beside a corner.
+    let mouth = nalgebra::center(&region.exterior[4], &region.exterior[5]);
+    let rest = vec![mouth, mouth - 0.1 * mouth.coords, mouth - 0.2 * mouth.coords];
+    let crack = Opened::symmetric(rest, &[0.001, 0.0005, 0.0], CrackEnd::Mouth, CrackEnd::Tip);
+    for cracks in [vec![], vec![crack]] {
+        let mut frame = frame(&region, 5, &cracks);
+        let move_on = |points: &mut Vec<Point>| points.iter_mut().for_each(|p| *p = moved * *p);
+        frame.outlines.iter_mut().for_each(|outline| move_on(&mut outline.position));
+        for crack in &mut frame.cracks {
+            move_on(&mut crack.above);
+            move_on(&mut crack.below);
+        }
+        move_on(&mut frame.particles.position);
+        let worst = |scene: &Scene, part: Part| {
+            let options = PostOptions { parts: vec![part], ..options(scene) };
+            let mesh = post_frame(scene, &frame, &options).unwrap().parts.remove(0).1.remove(0);
+            let used: std::collections::BTreeSet<u32> = mesh.slot(Slot::Outside).iter().flatten().copied().collect();
+            let walls = used.into_iter().map(|i| mesh.vertices[i as usize]).filter(|v| v.normal[2] == 0.0);
+            let (mut worst, mut corners) = (0.0_f64, 0);
+            for vertex in walls {
+                let [x, y, _] = vertex.position;
+                let place = back * Point::new(x, y);
+                let normal = (moved.transpose() * Vector::new(vertex.normal[0], vertex.normal[1])).normalize();
+                let is_flat = place.y.abs() < 1e-6 && normal.y < -0.5;
+                corners += usize::from(place.y.abs() < 1e-6 && !is_flat);
+                let truth = if is_flat { -Vector::y() } else { place.coords.normalize() };
+                worst = worst.max(normal.perp(&truth).atan2(normal.dot(&truth)).abs().to_degrees());
+            }
+            (worst, corners)
+        };
+        for part in [Part::Cracked, Part::Body] {
+            let (found, corners) = worst(&scene, part);
+            assert!(found < 0.1, "{found} degrees, {part:?}, {} cracks", cracks.len());
+            // Two vertices at each end of the straight side stand on the arc.
+            assert_eq!(corners, 4);
+            assert!(worst(&straight, part).0 > 3.0);
+        }
+    }
+}
+
 #[test]
 fn damaged_frames_are_refused() {
     let region = square(20.0);

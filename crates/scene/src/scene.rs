@@ -103,6 +103,11 @@ pub struct Body {
     pub inclusions: Vec<Inclusion>,
     /// Initial velocities, added up.
     pub velocities: Vec<InitialVelocity>,
+    /// How curves that were drawn turn off the region: for each of its rings and each edge of that the angles from the
+    /// edge to the curve at its start and its end, counter-clockwise [rad]; zeros along lines. Empty where only lines
+    /// were drawn, and in takes that do not say it. It decides how walls are shaded and nothing else.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub turns: Vec<Vec<[f64; 2]>>,
 }
 
 impl Body {

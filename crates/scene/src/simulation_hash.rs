@@ -6,8 +6,8 @@ use sha2::{Digest, Sha256};
 
 impl Scene {
     /// SHA-256 over all that the frames of this scene depend on, in hexadecimal, and over nothing else: not over names,
-    /// the output, how many frames there are, or how the scene was written down. Scenes of the same hash give the same
-    /// frames.
+    /// the output, how walls are shaded, how many frames there are, or how the scene was written down. Scenes of the
+    /// same hash give the same frames.
     pub fn simulation_hash(&self) -> String {
         let mut scene = self.clone();
         scene.hash.clear();
@@ -20,6 +20,7 @@ impl Scene {
             let guides = [&mut crack.start_guide, &mut crack.end_guide];
             guides.into_iter().flatten().for_each(|guide| guide.for_each_mut(&mut |guide| guide.name.clear()));
         }
+        scene.bodies.iter_mut().for_each(|body| body.turns.clear());
         scene.frames.last = scene.frames.first;
         scene.frames.playback = PLAYBACK;
         // Each field by its name, so that a new one is thought of here.

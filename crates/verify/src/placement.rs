@@ -210,6 +210,7 @@ impl Placement {
             material,
             inclusions: Vec::new(),
             velocities: Vec::new(),
+            turns: Vec::new(),
         });
         // It must not fall onto the others.
         if scene.gravity != Vector::zeros() {

@@ -70,6 +70,7 @@ impl Problem {
                 material: 0,
                 inclusions: Vec::new(),
                 velocities: Vec::new(),
+                turns: Vec::new(),
             }],
             cracks: Vec::new(),
             toughness: Vec::new(),

@@ -32,6 +32,7 @@ pub fn scene(region: Region) -> Scene {
             material: 0,
             inclusions: Vec::new(),
             velocities: Vec::new(),
+            turns: Vec::new(),
         }],
         cracks: Vec::new(),
         toughness: Vec::new(),

@@ -1,6 +1,7 @@
 //! From a scene file to a [`Scene`]: defaults, then the file, then overrides.
 
 mod along;
+mod chord;
 mod draft;
 mod drawing;
 mod error;

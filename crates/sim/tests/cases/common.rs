@@ -45,6 +45,7 @@ pub(crate) fn plate(size: [f64; 2], cell_size: f64, frame_time: f64) -> Scene {
             material: 0,
             inclusions: Vec::new(),
             velocities: Vec::new(),
+            turns: Vec::new(),
         }],
         cracks: Vec::new(),
         colliders: Vec::new(),

@@ -2,9 +2,10 @@
 
 use super::grid::GridPoint;
 use super::limits::{MOST_CROSSINGS, MOST_PAIRS, MOST_POINTS};
+use crate::load::chord::Chord;
 use crate::load::seating::Complaint;
 use fissure_plane::Point;
-use kurbo::{BezPath, PathEl};
+use kurbo::{BezPath, CubicBez, PathEl, PathSeg, QuadBez};
 
 /// A drawing is single precision: to flatten finer than this part of a curve's size has no meaning.
 const FINEST: f64 = 1.0 / (1 << 22) as f64;
@@ -74,8 +75,13 @@ fn cross([a, b]: &[GridPoint; 2], [c, d]: &[GridPoint; 2]) -> bool {
 pub(super) type Polyline = (Vec<Point>, bool);
 
 /// The subpaths of a path, flattened to `tolerance` [m], each with whether it is closed (by Z or by ending where it
-/// began).
-pub(super) fn flatten(path: &BezPath, tolerance: f64, budget: &mut Budget) -> Result<Vec<Polyline>, Complaint> {
+/// began). `chords` receives those of its curves.
+pub(super) fn flatten(
+    path: &BezPath,
+    tolerance: f64,
+    budget: &mut Budget,
+    mut chords: Option<&mut Vec<Chord>>,
+) -> Result<Vec<Polyline>, Complaint> {
     let tolerance = tolerance.max(FINEST * path.control_box().size().max_side());
     let mut lines: Vec<Polyline> = Vec::new();
     let (mut start, mut last) = (kurbo::Point::ORIGIN, kurbo::Point::ORIGIN);
@@ -102,6 +108,14 @@ pub(super) fn flatten(path: &BezPath, tolerance: f64, budget: &mut Budget) -> Re
                     }
                 });
                 budget.spend_points(points.len() - before)?;
+                let curve = match element {
+                    PathEl::QuadTo(p, q) => Some(PathSeg::Quad(QuadBez::new(last, p, q))),
+                    PathEl::CurveTo(p, q, r) => Some(PathSeg::Cubic(CubicBez::new(last, p, q, r))),
+                    _ => None,
+                };
+                if let (Some(chords), Some(curve)) = (&mut chords, curve) {
+                    chords.extend(Chord::of_curve(curve, &points[before - 1..]));
+                }
                 last = element.end_point().unwrap_or(last);
             }
         }

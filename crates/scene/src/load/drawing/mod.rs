@@ -24,6 +24,7 @@ mod stroke;
 mod styles;
 mod views;
 
+use super::chord::Chord;
 use super::error::{DRAWING, FONT, LoadError};
 use super::seating::Complaint;
 use crate::document::Drawing;
@@ -125,6 +126,12 @@ impl LoadedDrawing {
     /// They are simple and apart: places where outlines touch themselves are parted by a notch smaller than the
     /// tolerance.
     pub(crate) fn regions(&self, name: &str, tolerance: f64) -> Result<Vec<Region>, Complaint> {
+        Ok(self.outlines(name, tolerance)?.0)
+    }
+
+    /// The regions that element `name` covers, as [`LoadedDrawing::regions`] gives them, and the chords of all curves
+    /// that they were made of.
+    pub(crate) fn outlines(&self, name: &str, tolerance: f64) -> Result<(Vec<Region>, Vec<Chord>), Complaint> {
         let element = self.names.find(name)?;
         let place = |(message, remedy): Complaint| (format!("{}: {message}", self.names.place(name, element)), remedy);
         self.effects.check_masks(element.number, &self.names.place(name, element))?;
@@ -141,7 +148,7 @@ impl LoadedDrawing {
             let message = format!("it falls into {} parts, more than {MOST_PARTS}", regions.len());
             return Err(place((message, "simplify it in the SVG editor".into())));
         }
-        Ok(regions)
+        Ok((regions, tracing.chords()))
     }
 
     /// The open line that element `name` is.

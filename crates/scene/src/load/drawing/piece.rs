@@ -5,6 +5,7 @@ use super::area::{Area, FillRule};
 use super::flatten::{Budget, Polyline, flatten};
 use super::grid::{Grid, GridPoint};
 use super::stroke::stroke_outline;
+use crate::load::chord::Chord;
 use crate::load::seating::Complaint;
 use fissure_plane::Point;
 use kurbo::{Affine, BezPath, PathEl, Rect};
@@ -114,7 +115,7 @@ impl Piece<'_> {
     /// The polylines that it draws [m]; outside of its clips they are cut off.
     pub(super) fn polylines(&self, tracing: &mut Tracing) -> Result<Vec<Polyline>, Complaint> {
         let path = self.around.to_metres * bezier(self.path.data());
-        let mut lines = flatten(&path, tracing.tolerance, &mut tracing.budget)?;
+        let mut lines = flatten(&path, tracing.tolerance, &mut tracing.budget, None)?;
         for &(clip, to_metres) in &self.around.clips {
             let area = tracing.clip_area(clip, to_metres)?;
             lines = lines.into_iter().flat_map(|line| area.cut_line(line, tracing.grid)).collect();
@@ -128,6 +129,8 @@ pub(super) struct Tracing {
     grid: Grid,
     tolerance: f64,
     budget: Budget,
+    /// Of all curves that areas have been made of.
+    chords: Vec<Chord>,
     /// By the id of the clip and the map of its user to metres.
     clips: HashMap<(String, [u64; 6]), Area>,
 }
@@ -135,7 +138,15 @@ pub(super) struct Tracing {
 impl Tracing {
     /// For an element within `reach` of the origin, curves flattened to `tolerance`, both in m.
     pub(super) fn new(reach: f64, tolerance: f64) -> Self {
-        Self { grid: Grid::covering(reach), tolerance, budget: Budget::of_element(), clips: HashMap::new() }
+        let (grid, budget) = (Grid::covering(reach), Budget::of_element());
+        Self { grid, tolerance, budget, chords: Vec::new(), clips: HashMap::new() }
+    }
+
+    /// The chords of all curves that areas have been made of, on the grid.
+    pub(super) fn chords(self) -> Vec<Chord> {
+        let Self { grid, mut chords, .. } = self;
+        chords.iter_mut().for_each(|chord| chord.ends = chord.ends.map(|end| grid.place(grid.snap(end))));
+        chords
     }
 
     /// The grid on which all areas are.
@@ -154,7 +165,7 @@ impl Tracing {
 
     /// What a path in metres fills; open subpaths are closed by a straight line, as SVG does.
     fn fill(&mut self, path: &BezPath, rule: FillRule) -> Result<Area, Complaint> {
-        let mut lines = flatten(path, self.tolerance, &mut self.budget)?;
+        let mut lines = flatten(path, self.tolerance, &mut self.budget, Some(&mut self.chords))?;
         // What a map collapses to a line covers nothing, and its edges, all on one another, would be split without end.
         lines.retain(|(points, _)| !is_flat(points, ROUNDING * self.tolerance));
         let snap = |(points, _): Polyline| points.into_iter().map(|p| self.grid.snap(p)).collect();

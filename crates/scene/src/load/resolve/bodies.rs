@@ -32,7 +32,8 @@ impl<'d> Resolver<'d> {
             let path = KeyPath::item("body", i);
             let material = self.material_index(path.then("material"), &keys.material, &mut materials)?;
             let shape = path.then("shape");
-            let regions = self.regions(&shape, &keys.shape, tolerance)?;
+            let (regions, chords) = self.outlines(&shape, &keys.shape, tolerance)?;
+            self.chords.push(chords);
             let regions = self.without_crumbs(&shape, &keys.name, regions, particle_spacing);
             self.own_names(&path, i, regions.len())?;
             let parts: Vec<usize> = (bodies.len()..bodies.len() + regions.len()).collect();
@@ -48,7 +49,14 @@ impl<'d> Resolver<'d> {
             let several = regions.len() > 1;
             for (k, region) in regions.into_iter().enumerate() {
                 let name = if several { part_name(&keys.name, k) } else { keys.name.clone() };
-                bodies.push(Body { name, region, material, inclusions: Vec::new(), velocities: velocities.clone() });
+                bodies.push(Body {
+                    name,
+                    region,
+                    material,
+                    inclusions: Vec::new(),
+                    velocities: velocities.clone(),
+                    turns: Vec::new(),
+                });
                 self.origin.bodies.push(i);
             }
         }

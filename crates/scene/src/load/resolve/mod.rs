@@ -16,6 +16,7 @@ mod short_cracks;
 mod toughness;
 mod wish;
 
+use super::chord::{Chord, turns};
 use super::drawing::LoadedDrawing;
 use super::picture::Picture;
 use crate::document::Document;
@@ -46,6 +47,8 @@ pub(crate) struct Resolver<'d> {
     pictures: &'d [Option<Picture>],
     default_name: String,
     origin: Origin,
+    /// For each `[[body]]` the chords of the curves of its shape.
+    chords: Vec<Vec<Chord>>,
     /// What will hardly go well, told while resolving. Paths count items as in the document.
     warnings: RefCell<Vec<Warning>>,
 }
@@ -69,7 +72,7 @@ impl<'d> Resolver<'d> {
         default_name: String,
     ) -> Self {
         let origin = Origin { frames_by_range: document.frames.range.is_some(), ..Origin::default() };
-        Self { document, drawing, pictures, default_name, origin, warnings: RefCell::default() }
+        Self { document, drawing, pictures, default_name, origin, chords: Vec::new(), warnings: RefCell::default() }
     }
 
     /// Tells something that will hardly go well; the path counts items as in the document.
@@ -139,6 +142,10 @@ impl<'d> Resolver<'d> {
         self.cracks(&mut scene, tolerance)?;
         self.flaws(&mut scene, tolerance)?;
         self.pressed_cracks(&mut scene)?;
+        // Mouths of cracks have become corners by now.
+        for (body, &number) in scene.bodies.iter_mut().zip(&self.origin.bodies) {
+            body.turns = turns(&body.region, &self.chords[number]);
+        }
         scene.validate().map_err(|fault| self.origin.in_document(fault))?;
         self.short_cracks(&scene);
         self.ligaments(&scene);

@@ -3,6 +3,7 @@
 use super::{Resolved, Resolver};
 use crate::document::{CircleKeys, Line, PolygonKeys, Shape};
 use crate::fault::{Check, KeyPath, SceneFault, Warning, show};
+use crate::load::chord::Chord;
 use crate::load::drawing::LoadedDrawing;
 use crate::load::seating::Complaint;
 use crate::range::{COORDINATE, LENGTH, POINTS};
@@ -49,24 +50,36 @@ impl<'d> Resolver<'d> {
 
     /// The regions a shape consists of: one, or several for a drawing of separate outlines.
     pub(super) fn regions(&self, path: &KeyPath, shape: &Shape, tolerance: f64) -> Resolved<Vec<Region>> {
+        Ok(self.outlines(path, shape, tolerance)?.0)
+    }
+
+    /// The regions a shape consists of, with the chords of its curves.
+    pub(super) fn outlines(
+        &self,
+        path: &KeyPath,
+        shape: &Shape,
+        tolerance: f64,
+    ) -> Resolved<(Vec<Region>, Vec<Chord>)> {
         match shape {
-            Shape::Rectangle(r) => rectangle(&path.then("rectangle"), r.min, r.max).map(|r| vec![r]),
+            Shape::Rectangle(r) => {
+                rectangle(&path.then("rectangle"), r.min, r.max).map(|region| (vec![region], Vec::new()))
+            }
             Shape::Circle(c) => {
                 let path = path.then("circle");
                 circle_in_range(&path, c)?;
-                Ok(vec![Region {
-                    exterior: circle_ring(Point::from(c.center), c.radius, tolerance),
-                    holes: Vec::new(),
-                }])
+                let exterior = circle_ring(Point::from(c.center), c.radius, tolerance);
+                let chords = Chord::of_circle(&exterior);
+                Ok((vec![Region { exterior, holes: Vec::new() }], chords))
             }
             Shape::Polygon(polygon) => {
                 let path = path.then("polygon");
                 enough_corners(&path, polygon)?;
                 let ring = |list: &[[f64; 2]], outer: bool| oriented(clean_ring(&points(list), 0.0), outer);
-                Ok(vec![Region {
+                let region = Region {
                     exterior: ring(&polygon.exterior, true),
                     holes: polygon.holes.iter().map(|h| ring(h, false)).collect(),
-                }])
+                };
+                Ok((vec![region], Vec::new()))
             }
             Shape::Svg(id) => {
                 let path = path.then("svg");
@@ -74,7 +87,7 @@ impl<'d> Resolver<'d> {
                 for (message, remedy) in drawing.remarks(id) {
                     self.warn(Warning::new(path.clone(), message, remedy));
                 }
-                drawing.regions(id, tolerance).map_err(at(&path))
+                drawing.outlines(id, tolerance).map_err(at(&path))
             }
         }
     }
