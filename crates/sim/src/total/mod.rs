@@ -17,6 +17,7 @@ mod cut;
 mod cutting;
 mod edge_means;
 mod field_vectors;
+mod held_points;
 mod lattice;
 mod loads;
 mod look;

@@ -1,6 +1,7 @@
 //! Supports: prescribed velocities of edges and of fields.
 
 use super::edge_means::means;
+use super::held_points::HeldPoint;
 use super::lattice::Lattice;
 use super::motion::Motion;
 use super::near::Near;
@@ -19,6 +20,8 @@ pub(super) struct Supports {
     of_support: Vec<Held>,
     /// The edges of each.
     chains: Vec<Vec<Chain>>,
+    /// The points of each that is smaller than a cell.
+    points: Vec<Vec<HeldPoint>>,
     /// What is held along x and along y.
     systems: [ConstraintSystem; 2],
     held: HeldFields,
@@ -38,12 +41,15 @@ impl Supports {
         let held = |(index, support): (usize, &Support)| {
             let selector = Selector::new(scene, &support.selection);
             let chains = &chains[index];
-            let means: Vec<EdgeMean> = chains.iter().flat_map(|chain| means(chain, lattice)).collect();
+            let mut means: Vec<EdgeMean> = chains.iter().flat_map(|chain| means(chain, lattice)).collect();
             let is_edge = matches!(support.selection, Selection::Edge { .. } | Selection::Outline(_));
             let held = |&&(field, node): &&(usize, Point)| holds(&selector, lattice, field, node, &bodies);
             // Of a side that no edge lies along: the nodes nearer to it than half a cell.
             let of_support = fields.iter().filter(|_| !is_edge || chains.is_empty()).filter(held);
             let held: Vec<u32> = of_support.map(|&(field, _)| field as u32).collect();
+            let is_small = means.is_empty() && held.is_empty();
+            let points = if is_small { HeldPoint::of(scene, &support.selection) } else { Vec::new() };
+            means.extend(points.iter().map(|point| point.mean(lattice)));
             if means.is_empty() && held.is_empty() {
                 // What is held are nodes: between two of them there may be particles.
                 let with_mass = fields.iter().filter(|&&(field, _)| lattice.mass()[field] > 0.0);
@@ -51,12 +57,13 @@ impl Supports {
                 let what = "node of the grid";
                 return Err(nothing_selected(what, &places, "support", index, &support.selection).into());
             }
-            Ok(Held { means, fields: held })
+            Ok((Held { means, fields: held }, points))
         };
-        let of_support = scene.supports.iter().enumerate().map(held).collect::<Result<Vec<_>, SimulationError>>()?;
+        let held = scene.supports.iter().enumerate().map(held).collect::<Result<Vec<_>, SimulationError>>()?;
+        let (of_support, points): (Vec<Held>, Vec<Vec<HeldPoint>>) = held.into_iter().unzip();
         let systems = systems(&scene.supports, &of_support, &lattice.inverse_mass);
         let held = HeldFields::of(&systems);
-        Ok(Self { of_support, chains, systems, held })
+        Ok(Self { of_support, chains, points, systems, held })
     }
 
     /// The same after a change: what is elsewhere is held as before.
@@ -67,7 +74,15 @@ impl Supports {
         let bodies = body_of_fields(scene, lattice);
         let fields = near.fields(lattice);
         let mut has_changed = false;
-        for ((held, chains), support) in self.of_support.iter_mut().zip(&self.chains).zip(&scene.supports) {
+        let drawn = self.chains.iter().zip(&self.points);
+        for ((held, (chains, points)), support) in self.of_support.iter_mut().zip(drawn).zip(&scene.supports) {
+            if !points.is_empty() {
+                if points.iter().any(|point| near.widened(0.0).any(|(low, high)| point.meets(low, high))) {
+                    has_changed = true;
+                    held.means = points.iter().map(|point| point.mean(lattice)).collect();
+                }
+                continue;
+            }
             if chains.iter().any(|chain| near.widened(0.0).any(|(low, high)| chain.meets(low, high))) {
                 has_changed = true;
                 held.means = chains.iter().flat_map(|chain| means(chain, lattice)).collect();

@@ -149,13 +149,12 @@ fn a_support_below_a_notch_leaves_the_other_face_at_rest() {
     }
 }
 
-/// Truth: the remedy that the message names. A support around a place between nodes may hold none of them, however many
-/// particles are there.
+/// Truth: the remedy that the message names. A support beside the body holds nothing, until it is large enough.
 #[test]
-fn a_support_between_nodes_says_how_large_it_must_be() {
+fn a_support_beside_the_body_says_how_large_it_must_be() {
     let around = |radius: f64| {
         let mut scene = plate([4.0, 2.0], 0.25, 1e-3);
-        let points = vec![Point::new(2.1, 1.12)];
+        let points = vec![Point::new(2.1, 2.12)];
         hold(&mut scene, Selection::Near { points, radius }, [Some(0.0), None]);
         scene
     };
