@@ -26,6 +26,7 @@ use crate::slot::Slot;
 use crate::smooth::SmoothCracks;
 use crate::snap::Grid;
 use crate::source::{Carried, SourceEdge};
+use crate::thinned::{kept_points, picked, thinned};
 use crate::triangulate::{Cap, Division, triangulate};
 use crate::widening::{Shift, Widening, widened};
 use fissure_scene::{Attribute, CrackFrame, Cut, Fragments, Frame, Region, Scene, Vector, Walls};
@@ -44,9 +45,19 @@ type Boundaries = BTreeMap<ObjectKey, Vec<SourceEdge>>;
 ///
 /// Each is made of its own boundary alone, so that what touches or overlaps is never joined.
 pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result<Vec<Mesh>, PostError> {
-    let fragments = Fragments::of_frame(frame);
+    let mut fragments = Fragments::of_frame(frame);
+    let mut cracks = SmoothCracks::new(scene, frame, &fragments, options.smoothing);
+    let mut histories = if options.attributes.is_empty() { None } else { histories(frame) };
+    let lines;
+    let mut moved = frame;
+    if options.wall_step > 0.0 {
+        let kept = kept_points(scene, frame, &fragments, &cracks, options.wall_step * scene.cell_size);
+        (lines, cracks) = thinned(frame, &cracks, &kept);
+        moved = &lines;
+        fragments = Fragments::of_frame(moved);
+        histories = histories.map(|all| all.iter().zip(&kept).map(|(of_crack, kept)| picked(of_crack, kept)).collect());
+    }
     let numbers = numbers(&fragments, frame);
-    let cracks = SmoothCracks::new(scene, frame, &fragments, options.smoothing);
     let offsets = options.explode.as_ref().map(|curve| offsets(frame, curve.value(frame.time))).unwrap_or_default();
     let mut shifts = shifts(scene, frame.time, &cracks.cracks, options);
     let beyond = farthest(offsets.values()) + farthest(shifts.iter().flatten().flat_map(|s| [&s.above, &s.below]));
@@ -65,9 +76,8 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
     }
     let relief = options
         .roughness
-        .map(|roughness| Relief::new(roughness, options.thickness, frame, &cracks.cracks, &cracks.offsets));
-    let asked = !options.attributes.is_empty();
-    let lines = MovedLines::new(scene, frame, &cracks, shifts).with(asked.then(|| histories(frame)).flatten());
+        .map(|roughness| Relief::new(roughness, options.thickness, moved, &cracks.cracks, &cracks.offsets));
+    let lines = MovedLines::new(scene, moved, &cracks, shifts).with(histories);
     let mut objects = BTreeMap::<ObjectKey, Vec<Vec<Vec<SourceEdge>>>>::new();
     for (fragment, number) in fragments.list().iter().zip(numbers) {
         let grid = grids[fragment.body as usize];

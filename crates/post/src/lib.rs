@@ -83,6 +83,7 @@ mod slot;
 mod smooth;
 mod snap;
 mod source;
+mod thinned;
 mod triangulate;
 mod widening;
 #[cfg(feature = "files")]

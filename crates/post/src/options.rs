@@ -22,6 +22,8 @@ pub struct PostOptions {
     pub cut: Cut,
     /// How far the paths of cracks may be moved to be smooth, in cells; 0: not at all.
     pub smoothing: f64,
+    /// How long edges of crack walls may be where their path is straight, in cells; 0: as cracks grew.
+    pub wall_step: f64,
     /// Edges shorter than this part of the body are taken out, unless they were drawn; contours that touch in a point
     /// are parted by a quarter of it.
     pub shortest_edge: f64,
@@ -55,6 +57,7 @@ impl From<&OutputSettings> for PostOptions {
             walls: output.walls,
             cut: output.surfaces.cut,
             smoothing: output.surfaces.smoothing,
+            wall_step: output.surfaces.wall_step,
             opening: output.opening.clone(),
             explode: output.explode.clone(),
             roughness: output.surfaces.roughness,
@@ -95,6 +98,7 @@ impl PostOptions {
         }
         not_negative("smallest_fragment", self.smallest_fragment)?;
         not_negative("smoothing", self.smoothing)?;
+        not_negative("wall_step", self.wall_step)?;
         not_negative("bevel", self.bevel)?;
         not_negative("shortest_edge", self.shortest_edge)?;
         not_negative("crease_angle", self.crease_angle)

@@ -5,7 +5,7 @@ mod common;
 #[path = "common/winding.rs"]
 mod winding;
 
-use common::{Opened, frame, halves, options, scene, square};
+use common::{Opened, frame, halves, options, particles, scene, square};
 use fissure_plane::find_crossing;
 use fissure_post::{Content, Mesh, PostError, PostOptions, Slot, Vertex, post_frame};
 use fissure_scene::{CrackEnd, Curve, Cut, Frame, OpeningSettings, Part, Point, Region, Scene, Vector, Walls};
@@ -400,6 +400,31 @@ fn smoothed_walls_match() {
         let middle = heights.filter(|v| (3.0..17.0).contains(&v.position[0])).map(|v| v.position[1]);
         let (low, high) = middle.fold((20.0_f64, 0.0_f64), |(low, high), y| (low.min(y), high.max(y)));
         assert!(high - low < 0.02, "{low} {high}");
+    }
+}
+
+/// Truth: the same with all points. Both fragments have the same wall, of a third of the edges, nowhere farther off
+/// than promised: so much area may go from one to the other, and none is lost.
+#[test]
+fn longer_walls_enclose_the_same() {
+    let region = square(20.0);
+    let scene = scene(region.clone());
+    let height = |x: f64| 10.0 + 2.0 * (0.3 * x).sin();
+    let rest: Vec<Point> = (0..=160).map(|i| 0.125 * f64::from(i)).map(|x| Point::new(x, height(x))).collect();
+    let crack = Opened::symmetric(rest, &[0.05; 161], CrackEnd::Mouth, CrackEnd::Mouth);
+    let mut frame = frame(&region, 40, &[crack]);
+    frame.particles = particles(&region, |p| (u32::from(p.y > height(p.x)), Vector::zeros()));
+    let made = |wall_step: f64, cut: Cut| {
+        let options = PostOptions { wall_step, cut, smoothing: 0.5, ..options(&scene) };
+        post_frame(&scene, &frame, &options).unwrap().parts.remove(0).1
+    };
+    for cut in [Cut::Opening, Cut::Rest] {
+        let (all, some) = (made(0.0, cut), made(1.0, cut));
+        assert_eq!((all.len(), some.len()), (2, 2));
+        assert!((area(&all) - area(&some)).abs() < 1e-3, "{} {}", area(&all), area(&some));
+        let apart = (area(&all[..1]) - area(&some[..1])).abs();
+        assert!(apart < 0.04 * 22.0, "{apart}");
+        assert!(3 * inside_triangles(&some) < inside_triangles(&all));
     }
 }
 

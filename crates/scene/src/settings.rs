@@ -438,6 +438,9 @@ pub struct SurfaceSettings {
     pub cut: Cut,
     /// How far the paths of cracks may be moved to be smooth, in cells.
     pub smoothing: f64,
+    /// How long edges of crack walls may be where their path is straight, in cells; 0: as cracks grew.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub wall_step: f64,
     /// How rough the walls of cracks are shown; none: as the cracks are.
     pub roughness: Option<Roughness>,
     /// How wide the edges between walls of cracks and caps are bevelled [m]; 0: not at all.
@@ -460,8 +463,21 @@ pub struct Roughness {
 impl Default for SurfaceSettings {
     fn default() -> Self {
         let cut = Cut::default();
-        Self { cap_size: None, cut, smoothing: SMOOTHING, roughness: None, bevel: 0.0, uv_in_metres: false }
+        Self {
+            cap_size: None,
+            cut,
+            smoothing: SMOOTHING,
+            wall_step: 0.0,
+            roughness: None,
+            bevel: 0.0,
+            uv_in_metres: false,
+        }
     }
+}
+
+/// A key that is not there is 0, so that takes from before it was known go on.
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// Half a cell: what the solver resolves of a path.

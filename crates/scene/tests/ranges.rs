@@ -60,6 +60,7 @@ fn numbers_out_of_range_are_told() {
         (plate("[output]\nroughness = { amplitude = 1e3 }\n"), 6, &["1000 m", "half a cell", "at most"]),
         (plate("[output]\nroughness = { amplitude = 0.01, length = 0.03 }\n"), 6, &["0.03 m", "steep", "at least 0.04"]),
         (plate("[output]\nroughness = { amplitude = 1e-6 }\n"), 6, &["too many", "at least"]),
+        (plate("[output]\nwall_step = 3\n"), 6, &["`wall_step` is 3", "at most 2 cells"]),
         (plate("[output]\nbevel = 1e3\n"), 6, &["1000 m", "quarter of a cell", "at most"]),
         (plate("[output]\nbevel = 1e-3\nroughness = { seed = 1 }\n"), 6, &["`roughness`", "0.001", "one of the two"]),
         (plate("[frames]\nrange = '10-100000000000'\n"), 6, &["frames, at most 1000000", "at most 1000000"]),

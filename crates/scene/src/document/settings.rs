@@ -3,7 +3,7 @@
 use super::{Ease, Switch};
 use crate::range::{
     ACUTE, AREA, BENDING, CELLS, CRITICAL_COMPRESSION, CRITICAL_STRETCH, DAMPING, FRACTION, FRAME, FRAME_RATE,
-    FRICTION, HARDENING, LENGTH, RELEASE_RATIO, SMOOTHING_CELLS, SPEED_FACTOR, TIME_STEP, WIDTH, pairs,
+    FRICTION, HARDENING, LENGTH, RELEASE_RATIO, SMOOTHING_CELLS, SPEED_FACTOR, TIME_STEP, WALL_CELLS, WIDTH, pairs,
 };
 use crate::scene::Plasticity;
 use crate::settings::*;
@@ -243,6 +243,10 @@ pub struct OutputKeys {
     /// How far the paths of cracks that grew freely may be moved to be smooth, in cells. Default: 0.5; 0: not at all.
     #[schemars(transform = SMOOTHING_CELLS.bounds())]
     pub smoothing: f64,
+    /// How long edges of crack walls may be where their path is straight, in cells: 0.5 makes meshes of half the size.
+    /// Default: 0, as cracks grew, about an eighth of a cell.
+    #[schemars(transform = WALL_CELLS.bounds())]
+    pub wall_step: f64,
     /// How rough the walls of cracks are shown. Default: as the cracks are.
     pub roughness: Option<RoughnessKeys>,
     /// Width in m of a bevel on the edges between walls of cracks and caps: at most a quarter of a cell and of the
@@ -321,6 +325,7 @@ impl Default for OutputKeys {
             cap_size: None,
             cut: Cut::default(),
             smoothing: SMOOTHING,
+            wall_step: 0.0,
             roughness: None,
             bevel: 0.0,
             uv_in_metres: false,

@@ -50,7 +50,7 @@ pub fn with_output(scene: &Scene, overrides: &[String]) -> Result<Scene, LoadErr
 fn keys(output: &OutputSettings, frames: &FrameSettings) -> OutputKeys {
     let OutputSettings { thickness, formats, parts, up, smallest_fragment, walls, .. } = output;
     let OutputSettings { surfaces, opening, explode, attributes, .. } = output;
-    let SurfaceSettings { cap_size, cut, smoothing, roughness, bevel, uv_in_metres } = *surfaces;
+    let SurfaceSettings { cap_size, cut, smoothing, wall_step, roughness, bevel, uv_in_metres } = *surfaces;
     let opening = opening.as_ref().map(|opening| {
         let (factor, keyframes) = schedule(&opening.factor, frames);
         OpeningKeys { factor, keyframes, ease: Ease::Linear, least: opening.least, falloff: Some(opening.falloff) }
@@ -74,6 +74,7 @@ fn keys(output: &OutputSettings, frames: &FrameSettings) -> OutputKeys {
         cap_size,
         cut,
         smoothing,
+        wall_step,
         roughness,
         bevel,
         uv_in_metres,

@@ -135,6 +135,8 @@ pub(crate) const SPREAD: Range = Range { ends: [true, false], ..UNIT };
 pub(crate) const CELLS: Range = within(1e-3, 1e4, "cells");
 /// How far the path of a crack may be moved to be smooth.
 pub(crate) const SMOOTHING_CELLS: Range = not_negative(2.0, "cells");
+/// How long edges of crack walls may be.
+pub(crate) const WALL_CELLS: Range = not_negative(2.0, "cells");
 /// A factor on K_II in the direction of growth.
 pub(crate) const BENDING: Range = not_negative(1e3, "");
 /// A factor on the speed limit.

@@ -5,7 +5,7 @@ use crate::fault::Check;
 use crate::fault::{KeyPath, SceneFault, short};
 use crate::range::{
     ACUTE, AREA, BENDING, CELLS, DAMPING, FRACTION, FRAME_RATE, FRAMES, FRICTION, ITEMS, LENGTH, PARTICLE_FRAMES,
-    PARTICLES, RELEASE_RATIO, SMOOTHING_CELLS, TIME, TIME_STEP, UNIT, WIDTH,
+    PARTICLES, RELEASE_RATIO, SMOOTHING_CELLS, TIME, TIME_STEP, UNIT, WALL_CELLS, WIDTH,
 };
 use crate::scene::{Body, Scene};
 use crate::settings::{Branching, Roughness};
@@ -173,6 +173,7 @@ impl Scene {
         LENGTH.check(KeyPath::setting("output", "thickness"), "the thickness", o.thickness)?;
         AREA.check(KeyPath::setting("output", "smallest_fragment"), "the smallest fragment", o.smallest_fragment)?;
         SMOOTHING_CELLS.check(KeyPath::setting("output", "smoothing"), "`smoothing`", o.surfaces.smoothing)?;
+        WALL_CELLS.check(KeyPath::setting("output", "wall_step"), "`wall_step`", o.surfaces.wall_step)?;
         o.surfaces.cap_size.map_or(Ok(()), |size| self.validate_cap_size(size))?;
         o.surfaces.roughness.as_ref().map_or(Ok(()), |roughness| self.validate_roughness(roughness))?;
         self.validate_bevel()?;

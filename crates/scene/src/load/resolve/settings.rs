@@ -116,6 +116,7 @@ impl<'d> Resolver<'d> {
                 cap_size: keys.cap_size,
                 cut: keys.cut,
                 smoothing: keys.smoothing,
+                wall_step: keys.wall_step,
                 roughness: keys.roughness.as_ref().map(|keys| roughness(keys, cell_size)),
                 bevel: keys.bevel,
                 uv_in_metres: keys.uv_in_metres,
