@@ -1,11 +1,15 @@
 //! Work shared out between threads: `rayon` with the feature `threads`, the one thread there is without it.
 //!
-//! Nothing that is shared out adds numbers up, and what comes back is in order, so the results are the same either way.
+//! What is shared out adds numbers up only by blocks that are the same for any number of threads, and what comes back
+//! is in order, so the results are the same either way.
 
 #[cfg(not(feature = "threads"))]
 pub(crate) use alone::{current_num_threads, is_at_hand, join, prelude};
 #[cfg(feature = "threads")]
 pub(crate) use rayon::{current_num_threads, join, prelude};
+
+use prelude::*;
+use std::ops::Range;
 
 /// Numbers of each list that a thread goes through at once: few enough to stay in the cache of its core, many enough to
 /// be worth handing out.
@@ -47,6 +51,52 @@ fn share_out_from<T: Send, const N: usize>(
         upper
     });
     join(|| share_out_from(start, lists, part, work), || share_out_from(start + middle, upper, part, work));
+}
+
+/// Numbers that are summed up, or otherwise become one, before they meet others.
+const BLOCK: usize = 4096;
+
+/// What `work` makes of each block of `numbers`, in order, the place of its first one given. Blocks are the same for
+/// any number of threads, so that sums of what comes of them are as well.
+pub(crate) fn of_blocks<T: Send, R: Send>(
+    numbers: &mut [T],
+    work: impl Fn(usize, &mut [T]) -> R + Sync + Send,
+) -> Vec<R> {
+    let is_shared = part(numbers.len()) < numbers.len();
+    let blocks = numbers.chunks_mut(BLOCK).enumerate();
+    let work = |(k, block): (usize, &mut [T])| work(k * BLOCK, block);
+    if is_shared {
+        let blocks: Vec<_> = blocks.collect();
+        blocks.into_par_iter().map(work).collect()
+    } else {
+        blocks.map(work).collect()
+    }
+}
+
+/// The same for the numbers below `count` themselves.
+pub(crate) fn ranges<R: Send>(count: usize, work: impl Fn(Range<usize>) -> R + Sync + Send) -> Vec<R> {
+    let starts: Vec<usize> = (0..count).step_by(BLOCK).collect();
+    let work = |start: usize| work(start..(start + BLOCK).min(count));
+    if part(count) < count {
+        starts.into_par_iter().map(work).collect()
+    } else {
+        starts.into_iter().map(work).collect()
+    }
+}
+
+/// The sum of the products of two lists of one length.
+pub(crate) fn dot(one: &[f64], other: &[f64]) -> f64 {
+    // Some sums beside each other, which need not wait for each other.
+    const BESIDE: usize = 8;
+    let mut sums = [0.0; BESIDE];
+    let (mut ones, mut others) = (one.chunks_exact(BESIDE), other.chunks_exact(BESIDE));
+    for (a, b) in ones.by_ref().zip(others.by_ref()) {
+        for k in 0..BESIDE {
+            sums[k] += a[k] * b[k];
+        }
+    }
+    let rest: f64 = ones.remainder().iter().zip(others.remainder()).map(|(a, b)| a * b).sum();
+    sums.iter().sum::<f64>() + rest
 }
 
 /// Whether this thread is one of those that share the work, so that handing some of it out costs little.
@@ -119,5 +169,35 @@ mod alone {
         }
 
         impl<I: Iterator> ParallelIterator for I {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    /// Truth: whole numbers, whose sums are exact; and the sums of one thread, to the last bit, where they are not.
+    #[test]
+    fn sums_of_blocks_are_those_of_any_number_of_threads() {
+        for count in [0, 1, 7, 8, 4095, 4096, 4097, 50_001] {
+            let with = |threads: usize, number: fn(usize) -> f64| -> [f64; 2] {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                let mut numbers: Vec<f64> = (0..count).map(number).collect();
+                let ones = vec![1.0; count];
+                pool.install(|| {
+                    let sums = of_blocks(&mut numbers, |start, block| dot(block, &ones[start..start + block.len()]));
+                    let products = ranges(count, |range| range.map(|k| number(k) * number(k)).sum::<f64>());
+                    [sums.iter().sum(), products.iter().sum()]
+                })
+            };
+            let n = count as f64;
+            let exact = [n * (n - 1.0) / 2.0, (n - 1.0) * n * (2.0 * n - 1.0) / 6.0];
+            assert_eq!(with(1, |k| k as f64), exact, "{count}");
+            let alone = with(1, |k| (k as f64).sin());
+            for threads in [2, 3] {
+                assert_eq!(with(threads, |k| (k as f64).sin()).map(f64::to_bits), alone.map(f64::to_bits), "{count}");
+            }
+        }
     }
 }

@@ -62,7 +62,7 @@ use look::Look;
 use motion::Motion;
 use near::Near;
 use probes::Probes;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use stiffening::Stiffening;
 use supports::{HeldStep, Supports};
 use tie::TieUnits;
@@ -93,6 +93,8 @@ pub(crate) struct Total {
     reactions: Vec<Reaction>,
     stiffening: Stiffening,
     steps_since_check: u32,
+    /// The largest stable step of material that is not stretched [s], once it is found; a cut changes it.
+    step_at_rest: OnceLock<f64>,
 }
 
 /// What of a solver cannot be laid anew from the scene and the cracks; last the work and the reactions so far.
@@ -182,6 +184,7 @@ impl Total {
             reactions: done.1,
             stiffening,
             steps_since_check: 0,
+            step_at_rest: OnceLock::new(),
         })
     }
 
@@ -265,7 +268,8 @@ fn internal_forces(lattice: &Lattice, ties: &Ties, u: &FieldVectors, force: &mut
 
 impl Solver for Total {
     fn stable_time_step(&self) -> f64 {
-        stability::largest_time_step(&self.lattice) * self.stiffening.part_of_step()
+        let at_rest = self.step_at_rest.get_or_init(|| stability::largest_time_step(&self.lattice));
+        at_rest * self.stiffening.part_of_step()
     }
 
     fn moving_time_step(&self, planned: f64) -> Option<f64> {
@@ -323,6 +327,7 @@ impl Solver for Total {
     }
 
     fn recut(&mut self, cracks: &Cracks, changed: &[TipId]) -> f64 {
+        self.step_at_rest = OnceLock::new();
         let points_before = self.probes.points_of_cracks();
         let mut boxes = self.lattice.set_cracks(cracks);
         let units = TieUnits::of(&self.lattice);

@@ -11,8 +11,10 @@ use crate::crack::Crack;
 use crate::crack::cracks::Cracks;
 use crate::faces::crack_frame::crack_frame;
 use crate::particles::ParticleNow;
+use crate::threads::ranges;
 use fissure_plane::{Matrix, Point, Vector};
 use fissure_scene::{CrackFrame, OutlineFrame, ParticleFrame, Scene};
+use std::ops::Range;
 
 /// The particles as a frame holds them, pieces left 0.
 pub(super) fn particle_frame(lattice: &Lattice, motion: &Motion) -> ParticleFrame {
@@ -63,11 +65,11 @@ pub(super) fn kinetic_energy(lattice: &Lattice, ties: &Ties, motion: &Motion) ->
 
 /// Strain energy of the material and of the ties [J/m].
 pub(super) fn strain_energy(lattice: &Lattice, ties: &Ties, motion: &Motion) -> f64 {
-    let mut reader = lattice.reader();
-    (0..lattice.particles.len())
-        .map(|p| lattice.particles.volume[p] * reader.energy_density(p, &motion.displacement))
-        .sum::<f64>()
-        + ties.energy(&motion.displacement)
+    let of_block = |particles: Range<usize>| {
+        let mut reader = lattice.reader();
+        particles.map(|p| lattice.particles.volume[p] * reader.energy_density(p, &motion.displacement)).sum::<f64>()
+    };
+    ranges(lattice.particles.len(), of_block).iter().sum::<f64>() + ties.energy(&motion.displacement)
 }
 
 /// What the sum of kinetic and strain energy lacks because velocities are those of half a step before [J/m].

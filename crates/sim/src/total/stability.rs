@@ -5,6 +5,7 @@ use super::internal_forces;
 use super::lattice::Lattice;
 use super::motion::Motion;
 use super::ties::Ties;
+use crate::threads::{dot, of_blocks};
 
 /// Rounds of the Lanczos iteration. On a plate of 20 × 40 cells with an edge crack 40 rounds give 3.4910e8 1/s², 300
 /// rounds 3.4914e8.
@@ -43,50 +44,49 @@ pub(super) fn largest_time_step(lattice: &Lattice) -> f64 {
             })
             .collect()
     });
-    let dot = |a: &FieldVectors, b: &FieldVectors| -> f64 {
-        a.iter().flatten().zip(b.iter().flatten()).map(|(x, y)| x * y).sum()
-    };
-    let norm = dot(&q, &q).sqrt();
+    let norm = of_both(&mut q, |_, _, q| dot(q, q)).sqrt();
     if norm == 0.0 {
         return f64::INFINITY;
     }
-    q.iter_mut().flatten().for_each(|x| *x /= norm);
+    let mut biggest = divide(&mut q, norm, &root);
     let mut before: FieldVectors = [vec![0.0; fields], vec![0.0; fields]];
     let mut scaled = before.clone();
     let mut force: FieldVectors = [Vec::new(), Vec::new()];
     let (mut alphas, mut betas): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
     for _ in 0..LANCZOS_ROUNDS {
-        // K M^-½ q by the forces of a displacement so small that the law is linear to round-off.
-        let biggest = (0..2).flat_map(|a| q[a].iter().zip(&root)).fold(0.0_f64, |m, (x, r)| m.max((x * r).abs()));
         if biggest == 0.0 {
             break;
         }
+        // K M^-½ q by the forces of a displacement so small that the law is linear to round-off.
         let amplitude = 1e-7 * lattice.grid.cell_size / biggest;
-        for axis in 0..2 {
-            for d in 0..fields {
-                scaled[axis][d] = q[axis][d] * root[d] * amplitude;
+        of_both(&mut scaled, |axis, start, scaled| {
+            for ((scaled, q), root) in scaled.iter_mut().zip(&q[axis][start..]).zip(&root[start..]) {
+                *scaled = q * root * amplitude;
             }
-        }
+            0.0
+        });
         lattice.internal_forces(&scaled, false, &mut force);
         let beta = betas.last().copied().unwrap_or(0.0);
-        for axis in 0..2 {
-            for d in 0..fields {
-                force[axis][d] = -force[axis][d] * root[d] / amplitude - beta * before[axis][d];
+        let alpha = of_both(&mut force, |axis, start, force| {
+            let lists = root[start..].iter().zip(&before[axis][start..]);
+            for (force, (root, before)) in force.iter_mut().zip(lists) {
+                *force = -*force * root / amplitude - beta * before;
             }
-        }
-        let alpha = dot(&force, &q);
-        for axis in 0..2 {
-            for d in 0..fields {
-                force[axis][d] -= alpha * q[axis][d];
+            dot(force, &q[axis][start..start + force.len()])
+        });
+        let next = of_both(&mut force, |axis, start, force| {
+            for (force, q) in force.iter_mut().zip(&q[axis][start..]) {
+                *force -= alpha * q;
             }
-        }
+            dot(force, force)
+        });
         alphas.push(alpha);
-        let beta = dot(&force, &force).sqrt();
+        let beta = next.sqrt();
         if beta <= 1e-12 * alpha.abs() {
             break;
         }
         betas.push(beta);
-        force.iter_mut().flatten().for_each(|x| *x /= beta);
+        biggest = divide(&mut force, beta, &root);
         std::mem::swap(&mut before, &mut q);
         std::mem::swap(&mut q, &mut force);
     }
@@ -98,6 +98,28 @@ pub(super) fn largest_time_step(lattice: &Lattice) -> f64 {
     });
     let largest = tridiagonal.symmetric_eigenvalues().max();
     2.0 / (RITZ_MARGIN * largest).sqrt()
+}
+
+/// The sum of what `work` makes of the blocks of both components, given the axis and the place of the first number.
+fn of_both(vectors: &mut FieldVectors, work: impl Fn(usize, usize, &mut [f64]) -> f64 + Sync + Send) -> f64 {
+    let mut sum = 0.0;
+    for (axis, numbers) in vectors.iter_mut().enumerate() {
+        sum += of_blocks(numbers, |start, block| work(axis, start, block)).iter().sum::<f64>();
+    }
+    sum
+}
+
+/// Divides all of a vector and gives the largest product of its size with a `root`.
+fn divide(vector: &mut FieldVectors, by: f64, root: &[f64]) -> f64 {
+    let largest = |start: usize, block: &mut [f64]| {
+        let mut largest = 0.0_f64;
+        for (x, root) in block.iter_mut().zip(&root[start..]) {
+            *x /= by;
+            largest = largest.max((*x * root).abs());
+        }
+        largest
+    };
+    vector.iter_mut().flat_map(|numbers| of_blocks(numbers, largest)).fold(0.0, f64::max)
 }
 
 /// Rayleigh quotient ω² = v·K v / v·M v [1/s²] of the present velocities; none at rest.

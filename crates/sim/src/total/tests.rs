@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use super::field_vectors::FieldVectors;
-use super::{Total, internal_forces};
+use super::{Total, internal_forces, stability};
 use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::tip::Tip;
 use crate::particles::Particles;
@@ -60,6 +60,23 @@ fn growth_keeps_mass_and_momentum() {
         assert!(total.kinetic_energy() <= kinetic * (1.0 + 1e-12));
         total.step(&cracks, 0.0, time_step, &mut |_| ()).unwrap();
     }
+}
+
+/// Truth: the limit of the lattice as it is. What is kept between cuts is that of the last one, not of the first.
+#[test]
+fn the_stable_step_is_that_of_the_last_cut() {
+    let (mut total, mut cracks) = solver(&cracked_plate());
+    let first = total.stable_time_step();
+    for _ in 0..6 {
+        let tip = cracks.position(TIP);
+        cracks.grow(TIP, &[tip + Vector::new(0.05, 0.011)]);
+        total.recut(&cracks, &[TIP]);
+        total.begin_run();
+        let anew = stability::largest_time_step(&total.lattice);
+        assert_eq!(total.stable_time_step(), anew);
+        assert_eq!(total.stable_time_step(), anew);
+    }
+    assert!(total.stable_time_step() != first, "{first} whatever is cut");
 }
 
 /// Truth: a rigid turn strains nothing. Ten turns by placing the nodes; the stress stays below 1e-10 E.
