@@ -1,6 +1,7 @@
 //! Values at the fields of nodes, and their change by the forces of a step.
 
 use super::setup::Setup;
+use crate::threads;
 use fissure_scene::Vector;
 
 /// Values at fields: the own field of node i has number i, the further fields of all nodes follow.
@@ -67,14 +68,17 @@ impl Nodes {
     pub(super) fn update_velocities(&mut self, gravity: Vector, damping: f64, time_step: f64) {
         let decay = (-damping * time_step).exp();
         let gravity = gravity * time_step;
+        let (mass, part) = (&self.mass, threads::part(self.mass.len()));
         for axis in 0..2 {
-            let (before, after) = (&mut self.before[axis], &mut self.after[axis]);
-            for ((m, v), f) in self.mass.iter().zip(before.iter_mut()).zip(after.iter_mut()) {
-                if *m > 0.0 {
-                    *v /= m;
-                    *f = *v * decay + time_step * *f / m + gravity[axis];
+            let lists = [&mut self.before[axis], &mut self.after[axis]].map(Vec::as_mut_slice);
+            threads::share_out(lists, part, &|start, [before, after]| {
+                for ((m, v), f) in mass[start..].iter().zip(before).zip(after) {
+                    if *m > 0.0 {
+                        *v /= m;
+                        *f = *v * decay + time_step * *f / m + gravity[axis];
+                    }
                 }
-            }
+            });
         }
     }
 

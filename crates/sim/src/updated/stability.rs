@@ -5,6 +5,7 @@ use super::setup::Setup;
 use crate::grid::kernel::axis_stencil;
 use crate::material::constitutive::principal_stretches;
 use crate::material::elastic::Elastic;
+use crate::threads::ranges;
 use fissure_scene::{Kernel, Scene, Transfer};
 
 /// Places of a particle between two nodes at which a kernel is tried, and how far each is shifted: a node at the end of
@@ -87,22 +88,25 @@ impl Stability {
         let h = setup.scene.cell_size;
         let speed = largest_speed(setup, points);
         let carried = if setup.scene.solver.kernel == Kernel::Bilinear { speed } else { 0.0 };
-        let mut rate = speed / (LONGEST_WAY * h);
-        for (p, point) in points.point.iter().enumerate() {
-            let material = setup.particles.material[p] as usize;
+        let rate_of = |p: usize| {
+            let (material, point) = (setup.particles.material[p] as usize, &points.point[p]);
             // The tangent of P Fᵀ grows with the square of the largest stretch.
             let [stretch, _] = principal_stretches(&point.elastic_gradient);
             let hardening = points.plastic.get(p).map_or(1.0, |part| part.hardening.sqrt());
             let wave = setup.elastic[material].dilatational_wave_speed() * stretch.max(1.0) * hardening;
-            rate = rate.max((wave + carried) / (self.number[material] * h));
-        }
+            (wave + carried) / (self.number[material] * h)
+        };
+        let fastest = ranges(points.point.len(), |particles| particles.map(rate_of).fold(0.0, f64::max));
+        let rate = fastest.into_iter().fold(speed / (LONGEST_WAY * h), f64::max);
         1.0 / rate
     }
 }
 
 /// Speed of the fastest particle or support [m/s]: what is held may stand still now and move in the next step.
 fn largest_speed(setup: &Setup, points: &Points) -> f64 {
-    let of_particles = points.point.iter().map(|point| point.velocity.norm_squared()).fold(0.0, f64::max);
+    let speed_squared = |p: usize| points.point[p].velocity.norm_squared();
+    let of_blocks = ranges(points.point.len(), |particles| particles.map(speed_squared).fold(0.0, f64::max));
+    let of_particles = of_blocks.into_iter().fold(0.0, f64::max);
     let of_supports = setup.scene.supports.iter().map(|support| {
         let factor = support.curve.points.iter().fold(1.0_f64, |a, p| a.max(p.1.abs()));
         let v: f64 = support.velocity.iter().flatten().map(|v| v * v).sum();
