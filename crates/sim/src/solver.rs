@@ -80,6 +80,10 @@ pub(crate) trait Snapshot {
     /// Costs an evaluation of all forces.
     fn energy_of_lag(&self) -> f64;
 
+    /// Work that came in over half of the last step [J/m], where energies belong to moments half a step apart and
+    /// [`Solver::energy_of_lag`] does not know by how much they differ.
+    fn work_in_doubt(&self) -> f64;
+
     /// Kinetic energy [J/m]; cheap, unlike the other energies.
     fn kinetic_energy(&self) -> f64;
 

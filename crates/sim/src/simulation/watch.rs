@@ -6,7 +6,8 @@ use crate::{SimulationError, foresight};
 /// Energy a run may have beyond what it was given, as a part of what was exchanged. A sound run has less than 1e-3 in
 /// the total formulation, whose energies are all of one moment; one that fails gains without bound. Where forces are
 /// those of a grid that is laid anew in every step, kinetic and strain energy belong to moments half a step apart; of
-/// 130 plates under random loads, with all transfers, none had more than 1e-3 too much either.
+/// 130 plates under random loads, with all transfers, none had more than 1e-3 too much either. A plate that is pulled
+/// faster and faster has what half a step brings in besides: 1 % after 75 steps.
 const ENERGY_TOLERANCE: f64 = 0.01;
 
 impl Simulation {
@@ -14,7 +15,7 @@ impl Simulation {
     pub(super) fn watch_energy(&mut self) -> Result<(), SimulationError> {
         let now = self.solver.energies();
         let held = now.kinetic + now.strain + self.solver.energy_of_lag();
-        let given = self.state.first_energy + now.external_work;
+        let given = self.state.first_energy + now.external_work + self.solver.work_in_doubt();
         // What has been exchanged in all, so that a body that only flies is judged by its own energy, and one that
         // bounces not by the little that gravity has left it with at its highest point.
         self.state.most_work = self.state.most_work.max(now.external_work.abs());
@@ -65,7 +66,7 @@ mod tests {
     use crate::Simulation;
     use crate::test_scenes::{free_body, rectangle, set_motion};
     use fissure_plane::Vector;
-    use fissure_scene::{BoxSide, Curve, Formulation, Kernel, Load, LoadKind, Selection};
+    use fissure_scene::{BoxSide, Curve, Formulation, Kernel, Load, LoadKind, Selection, Support, Transfer};
     use std::ops::ControlFlow;
 
     /// Truth: a plate on which nothing acts keeps its energy, whatever waves run in it and wherever in them frames
@@ -93,6 +94,38 @@ mod tests {
         }
         assert!(worst < 1e-5 && ripple > 0.03, "{worst} {ripple}");
     }
+
+    /// Truth: a sound run ends. A plate held at one side and pulled at the other, faster and faster: with a grid laid
+    /// anew in every step, what half a step brings in is more than 1e-2 of what came before.
+    #[test]
+    fn a_plate_pulled_faster_and_faster_is_no_alarm() {
+        let mut scene = free_body(rectangle([0.0, 0.0], [1.5, 1.0]), 0.0625);
+        scene.solver.formulation = Formulation::Updated;
+        scene.solver.kernel = Kernel::Quadratic;
+        scene.solver.transfer = Transfer::Aflip;
+        scene.solver.courant = 0.98;
+        let sides = [rectangle([-1.0, -1.0], [0.2, 2.0]), rectangle([1.3, -1.0], [3.0, 2.0])];
+        for (side, speed) in sides.into_iter().zip([0.0, 0.3]) {
+            let curve = Curve { points: vec![(0.0, 0.0), (1.0, 1.0)] };
+            scene.supports.push(Support {
+                selection: Selection::Region(side),
+                velocity: [Some(speed), Some(0.0)],
+                curve,
+            });
+        }
+        scene.frames.last = 40;
+        let largest = Simulation::new(&scene).unwrap().stable_time_step;
+        scene.frames.rate = 1.0 / (3.9 * largest);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let mut most = 0.0_f64;
+        while !simulation.is_finished() {
+            simulation.advance(&mut |_| ControlFlow::Continue(())).unwrap();
+            let now = simulation.energies();
+            most = most.max((now.kinetic + now.strain) / now.external_work);
+        }
+        assert!(most > 1.01, "{most}");
+    }
+
     /// Truth: conservation of energy. What loads that start at once have done, at the longest steps, is in the plate.
     #[test]
     fn work_of_loads_is_what_a_plate_holds() {

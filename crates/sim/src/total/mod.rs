@@ -405,6 +405,10 @@ impl Snapshot for Total {
         &self.reactions
     }
 
+    fn work_in_doubt(&self) -> f64 {
+        0.0
+    }
+
     fn energy_of_lag(&self) -> f64 {
         snapshot::energy_of_lag(&self.lattice, &self.ties, &self.motion) + self.work_of_lag()
     }

@@ -94,6 +94,8 @@ pub(crate) struct Updated {
     external_work: f64,
     /// What each support has done so far.
     reactions: Vec<Reaction>,
+    /// Work done in the last step [J/m].
+    work_of_step: f64,
     // What follows is made anew in every step.
     lattice: Lattice,
     nodes: Nodes,
@@ -172,6 +174,7 @@ impl Updated {
             faces,
             external_work,
             reactions,
+            work_of_step: 0.0,
             lattice: Lattice::new(&setup),
             nodes: Nodes::default(),
             contacts: Contacts::default(),
@@ -301,7 +304,7 @@ impl Solver for Updated {
         time_step: f64,
         observe: &mut dyn FnMut(&dyn Observed),
     ) -> Result<(), SimulationError> {
-        let middle = time + 0.5 * time_step;
+        let (middle, work_before) = (time + 0.5 * time_step, self.external_work);
         self.lay_grid(cracks, time)?;
         // Thesis 3.1.1 and 3.1.2.
         self.move_nodes(middle, time_step);
@@ -312,7 +315,9 @@ impl Solver for Updated {
         // 3.1.7: with the velocities of this step, before the particles leave their places.
         self.advance_faces(cracks, time_step);
         // 3.1.5 and 3.1.6.
-        self.advance_particles(time, time_step)
+        self.advance_particles(time, time_step)?;
+        self.work_of_step = self.external_work - work_before;
+        Ok(())
     }
 
     fn check(&self, _time: f64) -> Result<(), SimulationError> {

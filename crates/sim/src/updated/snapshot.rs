@@ -44,6 +44,10 @@ impl Snapshot for Updated {
         0.0
     }
 
+    fn work_in_doubt(&self) -> f64 {
+        0.5 * self.work_of_step.abs()
+    }
+
     fn kinetic_energy(&self) -> f64 {
         self.points.kinetic_energy(&self.setup)
     }
