@@ -50,6 +50,8 @@ pub(super) struct Order {
     pub(super) node: Vec<u32>,
     /// Whether these are of the nodes that the grid has now.
     is_of_grid: bool,
+    /// Whether any of them has changed since they were sorted.
+    is_stale: bool,
     /// First place in `particles` of each node; two more at the end.
     first: Vec<u32>,
     particles: Vec<u32>,
@@ -63,6 +65,7 @@ impl Order {
 
     /// Sorts by `node`, which is below `nodes`.
     fn sort(&mut self, nodes: usize) {
+        self.is_stale = false;
         self.first.clear();
         self.first.resize(nodes + 2, 0);
         // Counted two places on and summed up, each number is where the node before begins; moving on with each of its
@@ -123,21 +126,19 @@ impl Lattice {
         };
         let mut old = std::mem::replace(&mut self.grid, grid);
         let is_same_lattice = self.grid.take_nodes(&mut old);
-        let mut now = before;
         if !(is_same_lattice && before.has_nodes) {
             let mut grid = std::mem::take(&mut self.grid);
             (self.grid.origin, self.grid.cell_size) = (grid.origin, grid.cell_size);
             grid.lay(points.iter().map(|p| self.stencil(p.position).first), kernel::width(self.kernel), ROOM);
             self.grid = grid;
             self.order.is_of_grid = false;
-            now = self.survey(setup, points);
-            if !now.has_nodes {
+            if !self.survey(setup, points).has_nodes {
                 return false;
             }
         }
         // Stiff bodies keep their cells for many steps.
         let is_sorted = self.order.particles.len() == points.len() && self.order.first.len() == self.grid.len() + 2;
-        if before.has_changed || now.has_changed || !is_sorted {
+        if self.order.is_stale || !is_sorted {
             self.order.sort(self.grid.len());
         }
         self.fields.clear(self.grid.len());
@@ -157,7 +158,7 @@ impl Lattice {
             parts.into_iter().map(run_widest).collect()
         };
         let survey = parts.into_iter().fold(Survey::NONE, Survey::with);
-        self.put_lowest(places, nodes, survey.has_nodes);
+        self.put_lowest(places, nodes, survey);
         survey
     }
 
@@ -171,9 +172,10 @@ impl Lattice {
         (places, nodes)
     }
 
-    /// Puts them back; `are_all` tells whether the grid has all of them.
-    pub(super) fn put_lowest(&mut self, places: Vec<[i32; 2]>, nodes: Vec<u32>, are_all: bool) {
-        (self.order.place, self.order.node, self.order.is_of_grid) = (places, nodes, are_all);
+    /// Puts them back as a `survey` has found them.
+    pub(super) fn put_lowest(&mut self, places: Vec<[i32; 2]>, nodes: Vec<u32>, survey: Survey) {
+        (self.order.place, self.order.node, self.order.is_of_grid) = (places, nodes, survey.has_nodes);
+        self.order.is_stale |= survey.has_changed;
     }
 
     /// The stencil of a particle at `place` that no crack divides.

@@ -269,7 +269,7 @@ impl Updated {
         let mut lowest = lattice.take_lowest(points.point.len());
         let step = ParticleStep { from: FromGrid { setup, lattice, nodes }, obstacles, time_step };
         let (work, survey) = step.advance(points, &mut lowest);
-        lattice.put_lowest(lowest.0, lowest.1, survey.has_nodes);
+        lattice.put_lowest(lowest.0, lowest.1, survey);
         // What supports hold is put where it belongs after that.
         lattice.ahead = held.iter().all(Vec::is_empty).then_some(survey);
         self.external_work += supports.hold_particles(setup, &held, held_step, points, reactions);

@@ -623,3 +623,30 @@ fn nodes_go_with_the_material_wherever_it_flies() {
         both.solver.points.point[count / 2..].iter_mut().for_each(|p| p.position += Vector::new(1e4, 3e4 + 0.1));
     }
 }
+
+/// Truth: brute force. A body at rest that a support holds, and one that flies past: each node's particles are those
+/// whose lowest node it is, in every step.
+#[test]
+fn particles_are_sorted_by_where_they_are() {
+    let mut scene = free_body(rectangle([0.0, 0.0], [1.0, 1.0]), 0.0625);
+    scene.supports.push(Support { selection: Selection::Bodies(vec![0]), velocity: [Some(0.0); 2], curve: always() });
+    add_body(&mut scene, [2.0, 0.0]);
+    // Not along the grid, and turning.
+    set_motion(&mut scene, Selection::All, [3.0, 1.0], 0.5, [2.5, 0.5]);
+    scene.bodies[1].velocities = std::mem::take(&mut scene.bodies[0].velocities);
+    let mut run = Run::new(&scene);
+    let time_step = 0.5 * run.solver.stable_time_step();
+    for _ in 0..60 {
+        run.steps(1, time_step);
+        run.solver.lay_grid(&run.cracks, run.time).unwrap();
+        let (lattice, points) = (&run.solver.lattice, &run.solver.points.point);
+        for node in 0..lattice.grid.len() {
+            for &p in lattice.order.of_nodes(node..node + 1) {
+                let lowest = lattice.stencil(points[p as usize].position).first;
+                assert_eq!(lattice.order.place[p as usize], lowest);
+                assert_eq!(lattice.order.node[p as usize] as usize, node, "particle {p}");
+            }
+        }
+        assert_eq!(lattice.order.of_nodes(0..lattice.grid.len()).len(), points.len());
+    }
+}
