@@ -69,12 +69,18 @@ fn pulled(force: &str) -> String {
 fn what_will_go_wrong_is_said_with_value_and_line() {
     let (exit, _, told) = said(&pulled("20e6"), "check", &["--strict"]);
     assert_eq!(exit, 0, "{told}");
+    let flying = format!("{BARE}[[initial_velocity]]\nselect = {{ body = \"plate\" }}\nvelocity = [20.0, 0.0]\n");
+    // What is stopped at an edge is loaded by that.
+    let stopped = format!("{flying}[[support]]\nselect = {{ edge = \"left\" }}\nfix = \"both\"\n");
+    let (exit, _, told) = said(&stopped, "check", &["--strict"]);
+    assert_eq!(exit, 0, "{told}");
     let soft = "[[material]]\nname = \"pmma\"\nyoung_modulus = 2.94\n";
     let narrow = pulled("20e6")
         .replace("[10.0, 10.0]", "[-8.0, 10.0]")
         .replace("[[0.0, 10.5], [0.0, 4.0]]", "[[-9.0, 10.5], [-9.0, 4.0]]");
     for (scene, words) in [
         (BARE.to_owned(), &["nothing loads the scene", "scene.toml:2:1"][..]),
+        (flying, &["about 0 % of its toughness", "add a load, a support that moves", "scene.toml:7:1"]),
         (pulled("0.0"), &["its forces are 0", "scene.toml:17:1"]),
         (pulled("20e3"), &["of its toughness at most", "multiply the loads by", "scene.toml:17:1"]),
         (pulled("20e6") + soft, &["Young's modulus 2.94e0 Pa", "more than 0.1", "scene.toml:25:17"]),

@@ -4,7 +4,7 @@ use super::samples::Samples;
 use super::width::width;
 use crate::formulation::impact_speed;
 use crate::material::elastic::Elastic;
-use fissure_scene::{Point, Scene, Support, Vector};
+use fissure_scene::{InitialVelocity, Point, Scene, Selection, Support, Vector};
 
 /// Times at which motions are looked at.
 const TIMES: u32 = 32;
@@ -51,10 +51,9 @@ pub(super) fn stress_of_motions(scene: &Scene, samples: &Samples, elastic: &[Ela
         }
     }
     let spin = b.velocities.iter().map(|v| v.angular_velocity.abs()).fold(0.0, f64::max);
-    let parts = b
-        .velocities
-        .iter()
-        .filter(|v| !matches!(v.selection, fissure_scene::Selection::All | fissure_scene::Selection::Bodies(_)));
+    // What moves as a whole is strained only where something holds it.
+    let is_whole = |v: &InitialVelocity| matches!(v.selection, Selection::All | Selection::Bodies(_));
+    let parts = b.velocities.iter().filter(|v| !held.is_empty() || !is_whole(v));
     speed = speed.max(parts.map(|v| v.velocity.norm()).fold(0.0, f64::max));
     if !scene.colliders.is_empty() || scene.bodies.len() > 1 {
         // How far what meets can push is its way; nothing is known of where, so all of it counts.

@@ -18,6 +18,8 @@ const UNSURE: f64 = 1.6;
 const STRAY: f64 = 0.25;
 /// Forces at points are far above nominal around them, and their stray part is that much larger.
 const AT_POINTS: f64 = 4.0;
+/// A part of its toughness so small is none.
+const LEAST: f64 = 1e-12;
 /// Most tips that are looked at: with more, the longest cracks speak for the rest.
 const MOST_TIPS: usize = 64;
 
@@ -42,7 +44,6 @@ pub(super) fn out_of_reach(scene: &Scene, elastic: &[Elastic]) -> Option<Warning
             percent(load)
         )
     };
-    let times = two_digits(1.0 / load.max(1e-300), f64::ceil);
     let (path, what) = if !scene.loads.is_empty() {
         (KeyPath::item("load", 0), "the loads")
     } else if !scene.supports.is_empty() {
@@ -50,9 +51,13 @@ pub(super) fn out_of_reach(scene: &Scene, elastic: &[Elastic]) -> Option<Warning
     } else {
         (KeyPath::item("crack", index), "what loads it")
     };
-    let remedy = format!(
-        "multiply {what} by {times} or more, make the crack longer, or use a material with less `fracture_toughness`"
-    );
+    // Of nothing there is no multiple.
+    let more = if load < LEAST {
+        "add a load, a support that moves or an initial velocity".to_owned()
+    } else {
+        format!("multiply {what} by {} or more", two_digits(1.0 / load, f64::ceil))
+    };
+    let remedy = format!("{more}, make the crack longer, or use a material with less `fracture_toughness`");
     Some(Warning::new(path, message, remedy))
 }
 

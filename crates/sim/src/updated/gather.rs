@@ -392,11 +392,7 @@ mod tests {
     fn all_instructions_gather_the_same_bits() {
         for kernel in [Kernel::Bilinear, Kernel::Gimp, Kernel::Quadratic, Kernel::Cubic] {
             let (setup, points, lattice) = super::super::tests::shaken(kernel);
-            let value =
-                |seed: f64| (0..lattice.grid.len()).map(|i| (seed * (i as f64 + 1.0)).sin()).collect::<Vec<_>>();
-            let pair = |seed: f64| [value(seed), value(seed + 1.0)];
-            let mut nodes = Nodes { before: pair(0.3), after: pair(0.7), ..Nodes::default() };
-            (nodes.smoothed, nodes.gain) = (pair(1.1), pair(1.9));
+            let nodes = super::super::tests::waving(&lattice);
             let from = FromGrid { setup: &setup, lattice: &lattice, nodes: &nodes };
             let wanted = Wanted { before: true, affine: true, smoothed: true, gain: true };
             let points = &points.point;

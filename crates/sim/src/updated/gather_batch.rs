@@ -280,7 +280,6 @@ fn read<const W: usize>(values: &mut [[Numbers; W]; W], of_nodes: &[f64], rows: 
 
 #[cfg(test)]
 mod tests {
-    use super::super::nodes::Nodes;
     use super::*;
     use crate::grid::kernel;
     use crate::wide::{Loop, run_in_all};
@@ -314,13 +313,9 @@ mod tests {
     fn a_batch_gathers_what_each_gathers_alone() {
         for kernel in [Kernel::Bilinear, Kernel::Gimp, Kernel::Quadratic, Kernel::Cubic] {
             let (setup, points, lattice) = super::super::tests::shaken(kernel);
-            let value =
-                |seed: f64| (0..lattice.grid.len()).map(|i| (seed * (i as f64 + 1.0)).sin()).collect::<Vec<_>>();
-            let pair = |seed: f64| [value(seed), value(seed + 1.0)];
-            let mut nodes = Nodes { before: pair(0.3), after: pair(0.7), ..Nodes::default() };
-            (nodes.smoothed, nodes.gain) = (pair(1.1), pair(1.9));
+            let mut nodes = super::super::tests::waving(&lattice);
             if kernel == Kernel::Bilinear {
-                nodes.remapped = pair(2.3);
+                nodes.remapped = super::super::tests::waves(&lattice, 2.3);
             }
             let from = FromGrid { setup: &setup, lattice: &lattice, nodes: &nodes };
             let points = &points.point;

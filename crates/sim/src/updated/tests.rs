@@ -44,6 +44,17 @@ impl Run {
     }
 }
 
+/// Velocities at the nodes of `lattice` that differ from node to node and by `seed`; x and y apart.
+pub(super) fn waves(lattice: &Lattice, seed: f64) -> [Vec<f64>; 2] {
+    [seed, seed + 1.0].map(|seed| (0..lattice.grid.len()).map(|i| (seed * (i as f64 + 1.0)).sin()).collect())
+}
+
+/// Nodes with velocities of all kinds but the remapped ones.
+pub(super) fn waving(lattice: &Lattice) -> Nodes {
+    let [before, after, smoothed, gain] = [0.3, 0.7, 1.1, 1.9].map(|seed| waves(lattice, seed));
+    Nodes { before, after, smoothed, gain, ..Nodes::default() }
+}
+
 /// A body without cracks whose particles are off their lattice, move at random and are strained, on the grid of its
 /// next step.
 pub(super) fn shaken(kernel: Kernel) -> (Setup, Points, Lattice) {
