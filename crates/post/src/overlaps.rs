@@ -11,7 +11,7 @@
 //! place in it the two parts together wind once, so one of them at least contains it.
 
 use crate::boolean::{Contour, Edge, Operation, Shape, SourceIndex, combine, common, covered_twice, twice_area};
-use crate::slivers::{is_sliver, without_slivers};
+use crate::slivers::{is_narrower, is_sliver, without_slivers};
 use crate::snap::{Grid, GridPoint};
 use crate::source::{Carried, SourceEdge};
 use fissure_scene::{Point, Vector};
@@ -262,8 +262,15 @@ impl Lattice {
         contour
     }
 
-    /// An overlap of another form: the larger one of `pair` makes room for the other one. Returns which one it is, and
-    /// what it loses.
+    /// Whether a region is all that there is of a fragment.
+    fn is_all(&self, region: &Shape, fragment: &Enclosed, number: usize) -> bool {
+        let scale = i128::from(self.scales[number]);
+        let of_fragment: i128 = fragment.shapes.iter().flatten().map(|contour| twice_area(contour)).sum();
+        region.iter().map(|contour| twice_area(contour)).sum::<i128>() >= of_fragment * scale * scale
+    }
+
+    /// An overlap of another form: the larger one of `pair` makes room for the other one, or the smaller one where it
+    /// is too thin to be kept. Returns which one it is, and what it loses.
     fn given_up(
         &self,
         [a, b]: [usize; 2],
@@ -275,7 +282,11 @@ impl Lattice {
             let twice: i128 = fragments[i].shapes.iter().flatten().map(|contour| twice_area(contour)).sum();
             twice as f64 * fragments[i].grid.step.powi(2)
         };
-        let larger = if area(b) > area(a) { b } else { a };
+        let (larger, smaller) = if area(b) > area(a) { (b, a) } else { (a, b) };
+        // A hole so narrow would be filled again.
+        let least = fragments[larger].least * self.scales[larger] as f64;
+        let is_narrow = region.iter().all(|contour| is_narrower(contour, least));
+        let larger = if is_narrow && !self.is_all(region, &fragments[smaller], smaller) { smaller } else { larger };
         let (scale, first) = (self.scales[larger], self.firsts[larger]);
         let fragment = &mut fragments[larger];
         let own = |p: GridPoint| GridPoint::new(rounded(p.x, scale), rounded(p.y, scale));
@@ -385,4 +396,53 @@ fn bounds(edges: impl Iterator<Item = Edge>) -> [GridPoint; 2] {
         high = GridPoint::new(high.x.max(a.x), high.y.max(a.y));
     }
     [low, high]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::boolean::material;
+    use crate::slot::Slot;
+
+    const LEAST: f64 = 100.0;
+
+    fn enclosed(piece: u32, ring: &[(i64, i64)]) -> Enclosed {
+        let carried = [Carried::within(Point::origin(), Vector::zeros()); 2];
+        let point = |&(x, y): &(i64, i64)| GridPoint::new(x, y);
+        let edges = ring.iter().zip(ring.iter().cycle().skip(1));
+        let edge = |(a, b)| SourceEdge { a: point(a), b: point(b), carried, slot: Slot::Inside };
+        let sources: Vec<SourceEdge> = edges.map(edge).collect();
+        let grid = Grid::covering(&[Point::new(1.0, 1.0)], 0.0);
+        Enclosed { body: 0, piece, grid, shapes: material(&sources), sources, least: LEAST, has_lost: false }
+    }
+
+    fn area(fragment: &Enclosed) -> f64 {
+        0.5 * fragment.shapes.iter().flatten().map(|contour| twice_area(contour)).sum::<i128>() as f64
+    }
+
+    /// Truth: by hand. A crumb lies across a square, two ends of it beyond: where it is as wide as what may be shown
+    /// the square makes room for it, where it is thinner, so that the room would be filled again, it loses that part
+    /// itself.
+    #[test]
+    fn thin_parts_of_crumbs_make_room_for_what_they_lie_in() {
+        const SIDE: i64 = 10_000;
+        let square = [(0, 0), (SIDE, 0), (SIDE, SIDE), (0, SIDE)];
+        for (width, parts) in [(400, [2, 1]), (40, [1, 2])] {
+            let [low, high] = [5000, 5000 + width];
+            let [left, right] = [-900, SIDE + 900];
+            let crumb = [
+                [(left, 4000), (-100, 4000), (-100, low), (SIDE + 100, low), (SIDE + 100, 4000), (right, 4000)],
+                [(right, 6000), (SIDE + 100, 6000), (SIDE + 100, high), (-100, high), (-100, 6000), (left, 6000)],
+            ];
+            let mut fragments = [enclosed(0, &square), enclosed(1, &crumb.concat())];
+            let before = [0, 1].map(|i| area(&fragments[i]));
+            share_out_overlaps(&mut fragments, f64::INFINITY, |_, _| None);
+            assert_eq!(fragments.each_ref().map(|fragment| fragment.shapes.len()), parts, "{width}");
+            let loser = usize::from(width < LEAST as i64);
+            for (i, fragment) in fragments.iter().enumerate() {
+                let lost = if i == loser { (width * SIDE) as f64 } else { 0.0 };
+                assert_eq!(area(fragment), before[i] - lost, "{width}");
+            }
+        }
+    }
 }

@@ -33,7 +33,7 @@ pub(crate) fn is_sliver(contour: &[Edge]) -> bool {
 }
 
 /// Whether a contour encloses something of a mean width of `width` grid steps at most.
-fn is_narrower(contour: &[Edge], width: f64) -> bool {
+pub(crate) fn is_narrower(contour: &[Edge], width: f64) -> bool {
     let length: f64 = contour.iter().map(|e| ((e.b.x - e.a.x) as f64).hypot((e.b.y - e.a.y) as f64)).sum();
     // A strip of width w and length l has area w l and circumference 2 l.
     twice_area(contour).unsigned_abs() as f64 <= width * length

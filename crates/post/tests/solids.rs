@@ -137,7 +137,7 @@ fn fragments_turn_and_fly_apart() {
         [(1.0, far), (-2.0, -far)],
         [(0.0, Vector::zeros()), (0.0, Vector::new(1e-3, 0.0))],
         [(0.0, Vector::zeros()), (0.0, Vector::zeros())],
-        [(0.0, Vector::zeros()), (0.1, Vector::new(0.2, 0.0))],
+        [(0.0, Vector::zeros()), (0.15, Vector::new(0.2, 0.0))],
         [(0.0, Vector::zeros()), (0.0, Vector::new(-10.0, 0.0))],
     ] {
         let (scene, frame) = halves(20.0, motions);
