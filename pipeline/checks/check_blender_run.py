@@ -12,6 +12,8 @@ import pathlib
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+# LNOR_SPACE_TRIGO_THRESHOLD in Blender's mesh_normals.cc: cosine of .8 degrees.
+ALIKE = 1 - 1e-4
 
 
 def shown(scene, number):
@@ -29,6 +31,16 @@ def column(collection, name, width, kind="float32"):
     return array.reshape(-1, width)
 
 
+def worst_normal(found, expected, vertex):
+    """How far normals of corners are off. Blender makes one of two at a vertex that are ALIKE: either will do."""
+    off = numpy.abs(found - expected).max(axis=1)
+    for corner in numpy.nonzero(off > 1e-3)[0]:
+        beside = expected[vertex == vertex[corner]]
+        alike = beside[beside @ expected[corner] > ALIKE]
+        off[corner] = numpy.abs(alike - found[corner]).max(axis=1).min()
+    return off.max()
+
+
 def check_mesh(mesh, parts):
     """That a mesh is closed and has what its parts carry."""
     faces = numpy.sort(column(mesh.loops, "vertex_index", 1, "int32").reshape(-1, 3), axis=1)
@@ -41,10 +53,10 @@ def check_mesh(mesh, parts):
     assert (column(mesh.polygons, "material_index", 1, "int32")[:, 0] == inside).all(), f"{mesh.name}: materials differ"
     assert len(mesh.uv_layers) == 1, mesh.name
     corners = numpy.concatenate([turned(part.normals)[part.triangles.reshape(-1)] for part in parts])
-    worst = numpy.abs(column(mesh.corner_normals, "vector", 3) - corners).max()
+    vertex = column(mesh.loops, "vertex_index", 1, "int32")[:, 0]
+    worst = worst_normal(column(mesh.corner_normals, "vector", 3), corners, vertex)
     assert worst < 1e-3, f"{mesh.name}: normals differ by {worst}"
     # Velocity and place of each corner, whichever vertices were joined.
-    vertex = column(mesh.loops, "vertex_index", 1, "int32")[:, 0]
     velocity = column(mesh.attributes["velocity"].data, "vector", 3)[vertex]
     expected = numpy.concatenate([turned(part.velocities)[part.triangles.reshape(-1)] for part in parts])
     size = max(1e-12, numpy.abs(expected).max())

@@ -21,7 +21,7 @@ use crate::pinch::part_pinches;
 use crate::relief::Relief;
 use crate::rest_cut::rest_cap;
 use crate::short_edges::{Growth, without_short_edges};
-use crate::slivers::{fill_narrow_holes, without_slivers};
+use crate::slivers::{drop_narrow_parts, fill_narrow_holes, without_slivers};
 use crate::slot::Slot;
 use crate::smooth::SmoothCracks;
 use crate::snap::Grid;
@@ -267,6 +267,7 @@ impl<'a> Solids<'a> {
         if !holds_open(self.options) {
             let is_inside = |edge: &Edge| sources[edge.source.0 as usize].slot == Slot::Inside;
             fill_narrow_holes(&mut of.shapes, of.least, is_inside);
+            drop_narrow_parts(&mut of.shapes, of.least, is_inside);
         }
         let is_drawn = |edge: &Edge, source: &SourceEdge| is_drawn(&body.region, edge, source);
         without_short_edges(&mut of.shapes, of.least, growth, sources, is_drawn);

@@ -155,14 +155,16 @@ impl Extrusion<'_> {
         let Some(other) = other else { return own };
         let (source, other_source, other_turn) = (self.source(edge), self.source(other), turn(other));
         let theirs = turned(wall_normal(other), other_turn);
-        // At rest, so that no edge becomes sharp as the material bends; what has no length there counts as it is now.
+        // At rest, so that no edge becomes sharp as the material bends, unless it has folded; what has no length there
+        // counts as it is now.
         let sides = match [source, other_source].map(SourceEdge::direction_at_rest) {
             [Some(own), Some(theirs)] => [turned(own, own_turn), turned(theirs, other_turn)],
             _ => [own, theirs],
         };
         let is_curve = own_turn.is_some() || other_turn.is_some();
         let crease = if is_curve { self.crease_angle.min(CORNER) } else { self.crease_angle };
-        let smooth = source.slot == other_source.slot && sides[0].dot(&sides[1]) >= crease.cos();
+        let is_folded = own.dot(&theirs) <= 0.0;
+        let smooth = !is_folded && source.slot == other_source.slot && sides[0].dot(&sides[1]) >= crease.cos();
         if smooth { (own + theirs).normalize() } else { own }
     }
 

@@ -671,7 +671,7 @@ fn fragments_shown_apart_keep_their_shape() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 60, ..ProptestConfig::default() })]
 
-    /// However wide, `post_frame` finds that all are solids.
+    /// However wide, `post_frame` finds that all are solids, and no wall is shaded as if it stood across.
     #[test]
     fn random_cracks_of_any_width_leave_solids(
         cracks in proptest::collection::vec(random_crack(), 1..4),
@@ -681,7 +681,18 @@ proptest! {
         let scene = scene(region.clone());
         let explode = Some(Curve { points: vec![(0.0, explode)] });
         let options = PostOptions { explode, ..widened(&scene, factor, least, falloff) };
-        post_frame(&scene, &frame(&region, 3, &cracks), &options).map_err(|e| TestCaseError::fail(e.to_string()))?;
+        let made = post_frame(&scene, &frame(&region, 3, &cracks), &options);
+        let meshes = made.map_err(|e| TestCaseError::fail(e.to_string()))?.parts.remove(0).1;
+        for mesh in &meshes {
+            for corners in mesh.slot(Slot::Inside).iter().map(|t| t.map(|i| mesh.vertices[i as usize])) {
+                let [a, b, c] = corners.map(|corner| nalgebra::Vector3::from(corner.position));
+                let facing = (b - a).cross(&(c - a));
+                for corner in corners {
+                    let normal = nalgebra::Vector3::from(corner.normal);
+                    prop_assert!(normal.dot(&facing) > 0.7 * facing.norm(), "{:?} on a wall that faces {:?}", normal, facing);
+                }
+            }
+        }
     }
 }
 
