@@ -4,7 +4,7 @@ use super::tip::Tip;
 use super::{Crack, KINK, SHORTEST_BRANCH, chord_start, slot};
 use crate::crack::division::CrackLine;
 use crate::saved::{self, Fits};
-use fissure_scene::{CrackEnd, End, Point, Scene, Vector};
+use fissure_scene::{CrackEnd, End, Point, Scene, TipState, Vector};
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 
@@ -276,6 +276,16 @@ impl Cracks {
     /// Makes the end something else.
     pub(crate) fn set_end(&mut self, id: TipId, end: CrackEnd) {
         self.0[id.crack].set_end(id.end, end);
+    }
+
+    /// Ends the tip there: the crack number `other` has ended on it, and each goes on as the other.
+    pub(crate) fn end_on(&mut self, id: TipId, other: usize) {
+        self.set_end(id, CrackEnd::Junction { crack: other as u32 });
+        self.0[id.crack].ways[slot(id.end)].target = None;
+        if let Some(tip) = self.tip_mut(id) {
+            tip.state = TipState::MetCrack;
+            tip.is_in_last_ligament = true;
+        }
     }
 
     /// Adds points at the end, for which lines will be cut; an increment that it is on its way through ends where it

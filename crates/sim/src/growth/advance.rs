@@ -1,5 +1,6 @@
 //! What a tip does when it grows.
 
+use crate::crack::cracks::TipId;
 use fissure_scene::{CrackEnd, Point, TipState};
 
 /// In a ligament of less than this many cells no integral can be taken. A tip that runs goes straight on through it, on
@@ -17,4 +18,6 @@ pub(crate) struct Advance {
     pub(crate) state: TipState,
     /// Whether the tip is in its last ligament afterwards.
     pub(crate) is_in_last_ligament: bool,
+    /// The tip of another crack that it ends on, and which ends with it.
+    pub(crate) meets: Option<TipId>,
 }

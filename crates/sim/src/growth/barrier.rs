@@ -10,11 +10,19 @@ use fissure_scene::{CrackEnd, End, TipState};
 /// part.
 const PARTED: f64 = 8.0;
 
+/// A tip that another one would pass, or leave behind it, by less than this many cells is the place where that one
+/// ends, and ends with it: the two cracks become one. What would be left of a crack beyond the other one is none for
+/// the grid while its points are hardly a particle apart, and its tip would be looked at across the faces of the
+/// other.
+const TIP_TO_TIP: f64 = 0.5;
+
 /// A place where a tip ends.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Barrier {
     at: Point,
     end: CrackEnd,
+    /// The tip that is there.
+    tip: Option<TipId>,
 }
 
 impl Barrier {
@@ -28,7 +36,7 @@ impl Barrier {
             CrackEnd::Junction { .. } => TipState::MetCrack,
             _ => TipState::LeftBody,
         };
-        Advance { points, end: self.end, state, is_in_last_ligament: true }
+        Advance { points, end: self.end, state, is_in_last_ligament: true, meets: self.tip }
     }
 
     /// The next advance by `step` of a tip at `from` that runs on to the barrier.
@@ -39,7 +47,29 @@ impl Barrier {
             return self.finish(Vec::new(), from);
         }
         let points = vec![from + way * (step / distance)];
-        Advance { points, end: CrackEnd::Tip, state: TipState::Growing, is_in_last_ligament: true }
+        Advance { points, end: CrackEnd::Tip, state: TipState::Growing, is_in_last_ligament: true, meets: None }
+    }
+
+    /// The barrier, or the tip of the crack in the way that is so near that both end there; `from` is where the tip
+    /// `id` is, `cell_size` h [m]. A tip that is led by a guide is not stopped by another one.
+    pub(super) fn or_tip(self, cracks: &Cracks, id: TipId, region: &Region, from: Point, cell_size: f64) -> Self {
+        let CrackEnd::Junction { crack } = self.end else { return self };
+        let mut nearest: Option<(f64, Self)> = None;
+        for other in ENDS.map(|end| TipId::new(crack as usize, end)) {
+            let is_led = cracks.tip(other).is_some_and(|tip| tip.guide.is_some());
+            if other == id || is_led || cracks.end(other) != CrackEnd::Tip {
+                continue;
+            }
+            let at = cracks.position(other);
+            let distance = (at - self.at).norm();
+            let is_near = distance < TIP_TO_TIP * cell_size && nearest.is_none_or(|n| distance < n.0);
+            // Nothing else is on the way to it: what ends at the tip, or a hair before it, is its own crack.
+            let is_first = |hit: Self| hit.end == self.end && (hit.at - at).norm() < 1e-6 * cell_size;
+            if is_near && at != from && first_barrier(cracks, id, region, from, at).is_none_or(is_first) {
+                nearest = Some((distance, Self { at, end: self.end, tip: Some(other) }));
+            }
+        }
+        nearest.map_or(self, |n| n.1)
     }
 }
 
@@ -50,7 +80,7 @@ pub(super) fn first_barrier(cracks: &Cracks, id: TipId, region: &Region, from: P
         if let Some((t, at)) = intersection(from, to, a, b)
             && nearest.is_none_or(|n| t < n.0)
         {
-            nearest = Some((t, Barrier { at, end: what }));
+            nearest = Some((t, Barrier { at, end: what, tip: None }));
         }
     };
     for ring in region.rings() {

@@ -41,7 +41,7 @@ pub(crate) fn next_increment(
                 if runs && !points.is_empty() {
                     return Some(Advance { is_in_last_ligament: true, ..open(vec![target.at], TipState::Growing) });
                 }
-                return Some(hit.finish(points, from));
+                return Some(hit.or_tip(cracks, id, region, last, h).finish(points, from));
             }
             points.push(next.at);
             (last, next) = (next.at, guide.after(next, step));
@@ -54,7 +54,10 @@ pub(crate) fn next_increment(
     }
     let last = cracks.last_direction(id);
     let toward = if tip.is_in_last_ligament { last } else { straight_on(way(cracks, id, assessed, scene), last) };
-    let through = |hit: Barrier| if runs { hit.approach(from, step) } else { hit.finish(Vec::new(), from) };
+    let through = |hit: Barrier| {
+        let hit = hit.or_tip(cracks, id, region, from, h);
+        if runs { hit.approach(from, step) } else { hit.finish(Vec::new(), from) }
+    };
     if let Some(hit) = first_barrier(cracks, id, region, from, from + toward * (step + LAST_LIGAMENT * h)) {
         return Some(through(hit));
     }
@@ -68,7 +71,7 @@ pub(crate) fn next_increment(
 
 /// An advance of a tip that has nothing in its way.
 fn open(points: Vec<Point>, state: TipState) -> Advance {
-    Advance { points, end: CrackEnd::Tip, state, is_in_last_ligament: false }
+    Advance { points, end: CrackEnd::Tip, state, is_in_last_ligament: false, meets: None }
 }
 
 /// The direction `toward`, or that of the crack where they differ by rounding.

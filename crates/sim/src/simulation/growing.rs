@@ -218,6 +218,10 @@ impl Simulation {
     /// changed in this round too. Whether the tip is to slide.
     fn follow(&mut self, tip: &Runner, decision: Decision, time: f64, changed: &mut Vec<TipId>) -> bool {
         let id = tip.id;
+        if !self.state.cracks.tip(id).is_some_and(|tip| tip.state.is_live()) {
+            // Another one has ended on it in this round.
+            return false;
+        }
         match decision {
             Decision::Rest => self.rest(id),
             // Held by its limit alone, a tip does not come to rest.
@@ -245,6 +249,12 @@ impl Simulation {
                 self.begin_increment(id, &advance, &tip.assessed);
                 if !advance.points.is_empty() {
                     changed.push(id);
+                }
+                if let Some(met) = advance.meets {
+                    self.state.cracks.end_on(met, id.crack);
+                    if !changed.contains(&met) {
+                        changed.push(met);
+                    }
                 }
                 return self.state.cracks.end(id) == CrackEnd::Tip;
             }

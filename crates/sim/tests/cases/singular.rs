@@ -270,6 +270,27 @@ fn a_crack_ends_on_the_one_it_meets() {
     }
 }
 
+/// Truth: two cracks that meet tip to tip are one, wherever a hair lies; half a cell off, the tip stays by itself.
+#[test]
+fn a_crack_that_runs_into_a_tip_ends_with_it() {
+    for (offset, meets) in [(-0.1, true), (-1e-9, true), (0.0, true), (1e-9, true), (0.1, true), (0.6, false)] {
+        let name = format!("{offset} m above the tip");
+        let mut scene = small_plate();
+        add_crack(&mut scene, &[[0.0, 4.13 + offset], [3.1, 4.13 + offset]]);
+        add_crack(&mut scene, &[[5.1, 4.13], [5.1, 6.5]]);
+        scene.cracks[1].start_live = false;
+        pull(&mut scene, STRESS);
+        for frame in both(&name, &scene, 5) {
+            let (first, second) = (&frame.cracks[0], &frame.cracks[1]);
+            let met = (TipState::MetCrack, CrackEnd::Junction { crack: 1 });
+            assert_eq!((tip(&frame, 0, End::End).state, first.end), met, "{name}");
+            assert_eq!(first.rest.last() == second.rest.first(), meets, "{name}");
+            let end = if meets { CrackEnd::Junction { crack: 0 } } else { CrackEnd::Tip };
+            assert_eq!(second.start, end, "{name}");
+        }
+    }
+}
+
 /// Truth: counted by hand. A crack drawn to one that parts the plate makes three pieces of it, and opens where it ends.
 #[test]
 fn a_crack_drawn_to_another_ends_on_it() {
