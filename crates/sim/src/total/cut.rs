@@ -84,14 +84,31 @@ impl CutParticles {
         }
     }
 
-    /// Lets go of all misfits but the part `kept`.
-    pub(super) fn relax_misfits(&mut self, kept: f64) {
-        let misfit = &mut self.misfit;
-        self.strained.retain(|&row| {
+    /// Lets go of all misfits but the part `kept`; `u` is the displacement.
+    ///
+    /// One that is larger than the strain of its particle is let go of only while that lowers the energy of the
+    /// particle: it is that of fields which an open crack has parted, and they would be pulled together by what nothing
+    /// pays for.
+    pub(super) fn relax_misfits(&mut self, kept: f64, particles: &Particles, materials: &[Elastic], u: &FieldVectors) {
+        let Self { stencils, misfit, strained, .. } = self;
+        strained.retain(|&row| {
             let of = &mut misfit[row as usize];
             let is_left = of.iter().any(|x| x.abs() > NO_MISFIT);
-            *of = if is_left { of.map(|x| x * kept) } else { [0.0; 4] };
-            is_left
+            if !is_left {
+                *of = [0.0; 4];
+                return false;
+            }
+            let own = Matrix::new(of[0], of[1], of[2], of[3]);
+            let (p, entries) = stencils.row(row as usize);
+            let strain = gradient(entries, own, u);
+            let is_bearable = own.norm_squared() <= strain.norm_squared() || {
+                let elastic = &materials[particles.material[p] as usize];
+                crate::first_piola_stress(&strain, elastic.mu, elastic.lambda).dot(&own) > 0.0
+            };
+            if is_bearable {
+                *of = of.map(|x| x * kept);
+            }
+            true
         });
     }
 
@@ -131,14 +148,8 @@ impl CutParticles {
         // First Piola–Kirchhoff stress times volume [N m].
         let stress = |row: usize| {
             let (p, entries) = self.stencils.row(row);
-            let mut h = if with_misfits { self.misfit_of_row(row) } else { Matrix::zeros() };
-            for e in entries {
-                let (x, y) = (u[0][e.field as usize], u[1][e.field as usize]);
-                h.m11 += x * e.gradient.x;
-                h.m12 += x * e.gradient.y;
-                h.m21 += y * e.gradient.x;
-                h.m22 += y * e.gradient.y;
-            }
+            let misfit = if with_misfits { self.misfit_of_row(row) } else { Matrix::zeros() };
+            let h = gradient(entries, misfit, u);
             let elastic = &materials[particles.material[p] as usize];
             crate::first_piola_stress(&h, elastic.mu, elastic.lambda) * (particles.volume[p] * self.parts[row].0)
         };
@@ -161,4 +172,18 @@ impl CutParticles {
         });
         stresses.into_iter().enumerate().for_each(|(row, of_row)| add(row, of_row));
     }
+}
+
+/// The displacement gradient that the displacement `u` of fields makes, and a `misfit` with it.
+#[inline]
+fn gradient(entries: &[Entry], misfit: Matrix, u: &FieldVectors) -> Matrix {
+    let mut h = misfit;
+    for e in entries {
+        let (x, y) = (u[0][e.field as usize], u[1][e.field as usize]);
+        h.m11 += x * e.gradient.x;
+        h.m12 += x * e.gradient.y;
+        h.m21 += y * e.gradient.x;
+        h.m22 += y * e.gradient.y;
+    }
+    h
 }

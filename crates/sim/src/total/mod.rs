@@ -233,8 +233,10 @@ impl Total {
     /// Lets go of the misfits that recuts have left, for a step of `time_step` [s].
     fn settle(&mut self, time_step: f64) {
         let kept = (-time_step / (SETTLING * self.lattice.crossing_time())).exp();
-        self.lattice.layout.cut.relax_misfits(kept);
-        self.lattice.layout.far.relax_misfits(kept);
+        let Lattice { layout, particles, materials, .. } = &mut self.lattice;
+        for rows in [&mut layout.cut, &mut layout.far] {
+            rows.relax_misfits(kept, particles, materials, &self.motion.displacement);
+        }
         self.ties.relax(kept);
     }
 

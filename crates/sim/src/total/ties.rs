@@ -120,11 +120,15 @@ impl Ties {
         let mut changed = BTreeSet::new();
         for id in cracks.ids().filter(|&id| is_changed(cracks.position(id))) {
             let is_tip = cracks.end(id) == CrackEnd::Tip;
-            let mut ties = if is_tip { ties_at(lattice, cracks, id) } else { Vec::new() };
+            let asked = if is_tip { ties_at(lattice, cracks, id) } else { Vec::new() };
             let before = self.of_tip.remove(&id).unwrap_or_default();
-            let takes_over: Vec<Option<&Tie>> = ties.iter().map(|tie| same_tie(tie, &ties, &before)).collect();
-            for (tie, same) in ties.iter_mut().zip(takes_over) {
-                tie.take_over(same, &motion.displacement);
+            let mut ties = Vec::with_capacity(asked.len());
+            for &(mut tie) in &asked {
+                let same = same_tie(&tie, &asked, &before);
+                if same.is_some() || tie.lies_together(&motion.displacement, lattice.grid.cell_size) {
+                    tie.take_over(same, &motion.displacement);
+                    ties.push(tie);
+                }
             }
             changed.extend(ties.iter().chain(&before).map(|tie| tie.node));
             self.of_tip.insert(id, ties);
