@@ -99,6 +99,12 @@ fn objects_are_fragments_in_what_falls() {
 }
 
 #[test]
+fn objects_are_fragments_in_a_wall_struck_by_a_bolt() {
+    // As its cracks are: shown wider they take some of the area.
+    follow("wall-bolt", &["grid.particle_spacing=0.05", "output.opening.keyframes=[[1, 1]]", "output.opening.least=0"]);
+}
+
+#[test]
 fn objects_are_fragments_in_drying_mud_and_struck_glass() {
     follow("mud", &["grid.particle_spacing=0.025"]);
     follow("glass-impact", &["grid.particle_spacing=0.0036"]);
