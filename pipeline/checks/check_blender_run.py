@@ -51,7 +51,7 @@ def check_mesh(mesh, parts):
     assert [m.name for m in mesh.materials] == ["fissure outside", "fissure inside"], mesh.name
     inside = numpy.concatenate([part.is_inside for part in parts])
     assert (column(mesh.polygons, "material_index", 1, "int32")[:, 0] == inside).all(), f"{mesh.name}: materials differ"
-    assert len(mesh.uv_layers) == 1, mesh.name
+    check_asked_for(mesh, parts)
     corners = numpy.concatenate([turned(part.normals)[part.triangles.reshape(-1)] for part in parts])
     vertex = column(mesh.loops, "vertex_index", 1, "int32")[:, 0]
     worst = worst_normal(column(mesh.corner_normals, "vector", 3), corners, vertex)
@@ -61,6 +61,25 @@ def check_mesh(mesh, parts):
     expected = numpy.concatenate([turned(part.velocities)[part.triangles.reshape(-1)] for part in parts])
     size = max(1e-12, numpy.abs(expected).max())
     assert numpy.median(numpy.abs(velocity - expected)) <= 1e-6 * size, f"{mesh.name}: velocities differ"
+
+
+def check_asked_for(mesh, parts):
+    """UV maps, and what crack walls tell, corner by corner."""
+    def corners(name, width):
+        of_parts = [(part.triangles.reshape(-1), getattr(part, name)) for part in parts]
+        return numpy.concatenate([numpy.zeros((len(c), width)) if v is None else v[c] for c, v in of_parts])
+
+    expected = {"UVMap": corners("texture", 2)}
+    if any(part.metres is not None for part in parts):
+        expected["metres"] = corners("metres", 2)
+    assert [layer.name for layer in mesh.uv_layers] == list(expected), mesh.name
+    for layer in mesh.uv_layers:
+        found, wanted = column(layer.uv, "vector", 2), expected[layer.name] * [1, -1] + [0, 1]
+        assert numpy.abs(found - wanted).max() <= 1e-6 * max(1, numpy.abs(wanted).max()), f"{mesh.name}: {layer.name} differs"
+    told = any(part.crack is not None for part in parts)
+    assert all((name in mesh.attributes) == told for name in CRACK), f"{mesh.name}: what walls tell"
+    for name, wanted in zip(CRACK, corners("crack", 3).T if told else []):
+        assert (column(mesh.attributes[name].data, "value", 1)[:, 0] == wanted).all(), f"{mesh.name}: {name} differs"
 
 
 def check(path, per_fragment):
@@ -100,7 +119,7 @@ if __name__ == "__main__":
     import numpy
 
     sys.path.insert(0, str(ROOT / "pipeline" / "blender"))
-    from fissure_run.build_mesh import turned
+    from fissure_run.build_mesh import CRACK, turned
     from fissure_run.glb_file import read_glb
     from fissure_run.import_run import import_run
 
