@@ -6,7 +6,7 @@ cd "$(dirname "$0")/.."
 python="${PYTHON:-python3}"
 
 # Name, look and frame.
-shots=("logo glass 24")
+shots=("logo glass 24" "glass-impact glass 30" "mud clay 40" "wall-bolt stone 40")
 
 cargo build --release --quiet --workspace --bin fissure
 for shot in "${shots[@]}"; do
@@ -19,3 +19,9 @@ for shot in "${shots[@]}"; do
     "$python" pipeline/blender/render_run.py "out/$name" --look "$look" --frames "$frame" --size 640 --samples 24 --jpeg \
         --output docs/gallery
 done
+
+# Blur along the motion: letters that fall for longer, with the shutter open for a whole frame.
+target/release/fissure run examples/logo/scene.toml --set 'collider.floor.shape.half_plane.point=[0.0, -3.0]' \
+    --set frames.rate=100 --set 'frames.range="1-12"' --set name=logo-falls --formats glb --overwrite --output out/logo-falls --quiet
+"$python" pipeline/blender/render_run.py out/logo-falls --look clay --frames 10 --shutter 1 --size 640 --samples 64 --jpeg \
+    --output docs/gallery
