@@ -23,7 +23,8 @@ pub struct GridKeys {
     /// Distance between neighbouring grid nodes in m. Default: twice the particle spacing.
     #[schemars(transform = LENGTH.bounds())]
     pub cell_size: Option<f64>,
-    /// How far polylines may be off the curves that were drawn in m. Default: a twentieth of the particle spacing.
+    /// How far polylines may be off the curves that were drawn in m. Default: a fiftieth of a cell or a quarter of a
+    /// millimetre per metre of the body, whichever is less.
     #[schemars(transform = LENGTH.bounds())]
     pub chord_error: Option<f64>,
     /// Instead of spacing and size: the coarsest particles with which the highest K of each tip is within so much, in

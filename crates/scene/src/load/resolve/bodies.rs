@@ -1,5 +1,6 @@
 //! Materials and bodies.
 
+use super::chord_error::ChordError;
 use super::shapes::center_of_area;
 use super::{Resolved, Resolver};
 use crate::document::MaterialKeys;
@@ -14,7 +15,7 @@ use fissure_plane::{Point, Vector};
 impl<'d> Resolver<'d> {
     pub(super) fn materials_and_bodies(
         &mut self,
-        tolerance: f64,
+        chord_error: ChordError,
         particle_spacing: f64,
     ) -> Resolved<(Vec<Material>, Vec<Body>)> {
         let mut materials: Vec<Material> = Vec::new();
@@ -32,6 +33,8 @@ impl<'d> Resolver<'d> {
             let path = KeyPath::item("body", i);
             let material = self.material_index(path.then("material"), &keys.material, &mut materials)?;
             let shape = path.then("shape");
+            let (low, high) = self.shape_box(&shape, &keys.shape)?;
+            let tolerance = chord_error.within((high - low).amax());
             let (regions, chords) = self.outlines(&shape, &keys.shape, tolerance)?;
             self.chords.push(chords);
             let regions = self.without_crumbs(&shape, &keys.name, regions, particle_spacing);

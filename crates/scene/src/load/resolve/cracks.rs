@@ -10,14 +10,14 @@ use crate::scene::*;
 use crate::validate::no_tip;
 use fissure_plane::Point;
 
-/// Crack ends this near to the outline or to another crack, in particle spacings, lie on it: twice what flattening may
-/// move it by.
-const MOUTH_TOLERANCE: f64 = 2.0 * super::FLATTENING;
+/// Crack ends this near to the outline or to another crack, in particle spacings, lie on it, and so do those within
+/// twice of what flattening may move it by.
+const MOUTH_TOLERANCE: f64 = 0.1;
 
 impl<'d> Resolver<'d> {
     pub(super) fn cracks(&mut self, scene: &mut Scene, tolerance: f64) -> Resolved<()> {
         let document = self.document;
-        let reach = MOUTH_TOLERANCE * scene.particle_spacing;
+        let reach = (MOUTH_TOLERANCE * scene.particle_spacing).max(2.0 * tolerance);
         let (mut lines, mut bodies, mut seated) = (Vec::new(), Vec::new(), Vec::new());
         for (i, keys) in document.crack.iter().enumerate() {
             let path = KeyPath::item("crack", i);

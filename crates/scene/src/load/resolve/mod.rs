@@ -1,6 +1,7 @@
 //! Turns what a user wrote into a [`Scene`]: names become indices, shapes become regions, defaults become numbers.
 
 mod bodies;
+mod chord_error;
 mod cracks;
 mod crumbs;
 mod flaws;
@@ -16,6 +17,7 @@ mod short_cracks;
 mod toughness;
 mod wish;
 
+use self::chord_error::ChordError;
 use super::chord::{Chord, turns};
 use super::drawing::LoadedDrawing;
 use super::picture::Picture;
@@ -36,8 +38,6 @@ type Resolved<T> = Result<T, SceneFault>;
 
 /// Particles along the larger side of the bodies' box, unless the scene says otherwise.
 const DEFAULT_RESOLUTION: f64 = 128.0;
-/// Curves are flattened to this part of the particle spacing, unless the scene says otherwise.
-const FLATTENING: f64 = 1.0 / 20.0;
 
 /// Resolves one document.
 pub(crate) struct Resolver<'d> {
@@ -102,10 +102,10 @@ impl<'d> Resolver<'d> {
         if document.grid.particle_spacing.is_some() {
             LENGTH.check(KeyPath::setting("grid", "particle_spacing"), "the particle spacing", particle_spacing)?;
         }
-        // A spacing larger than the bodies is reported by the validation; the shapes must not depend on it until then.
-        let tolerance = self.chord_error(particle_spacing)?.unwrap_or(FLATTENING * particle_spacing.min(side / 16.0));
-        let (materials, bodies) = self.materials_and_bodies(tolerance, particle_spacing)?;
         let cell_size = document.grid.cell_size.unwrap_or(2.0 * particle_spacing);
+        let chord_error = ChordError::new(&document.grid, particle_spacing, cell_size)?;
+        let tolerance = chord_error.within(side);
+        let (materials, bodies) = self.materials_and_bodies(chord_error, particle_spacing)?;
         let frames = self.frames()?;
         let solver = self.solver(&materials);
         let growth = self.growth(&frames, cell_size)?;
@@ -150,19 +150,6 @@ impl<'d> Resolver<'d> {
         self.short_cracks(&scene);
         self.ligaments(&scene);
         Ok(scene)
-    }
-
-    /// How far polylines may be off curves [m], where the document says so.
-    fn chord_error(&self, particle_spacing: f64) -> Resolved<Option<f64>> {
-        let Some(error) = self.document.grid.chord_error else { return Ok(None) };
-        let path = KeyPath::setting("grid", "chord_error");
-        LENGTH.check(path.clone(), "the chord error", error)?;
-        if error > particle_spacing {
-            let message = format!("a chord error of {error} m is more than the particle spacing, {particle_spacing} m");
-            let remedy = "give a smaller one, or leave it out: it is then a twentieth of the particle spacing";
-            return Err(SceneFault::new(path, message, remedy));
-        }
-        Ok(Some(error))
     }
 
     /// That no array of the document has too many items, before anything is made of them.

@@ -13,32 +13,37 @@ use fissure_plane::{
 };
 
 impl<'d> Resolver<'d> {
+    /// The box around all bodies.
     pub(super) fn bodies_box(&self) -> Resolved<(Point, Point)> {
         let mut corners = Vec::new();
         for (i, body) in self.document.body.iter().enumerate() {
-            let path = KeyPath::item("body", i).then("shape");
-            let (low, high) = match &body.shape {
-                Shape::Rectangle(r) => rectangle(&path.then("rectangle"), r.min, r.max)?.bounds(),
-                Shape::Circle(c) => {
-                    circle_in_range(&path.then("circle"), c)?;
-                    let (center, half) = (Point::from(c.center), Vector::new(c.radius, c.radius));
-                    (center - half, center + half)
-                }
-                Shape::Polygon(polygon) => {
-                    let corners = points(&polygon.exterior);
-                    COORDINATE.check_points(&path.then("polygon"), "a corner of the polygon", &corners)?;
-                    bounds(&corners)
-                }
-                Shape::Svg(id) => {
-                    let path = path.then("svg");
-                    let (low, high) = self.drawing(&path, id)?.bounds(id).map_err(at(&path))?;
-                    COORDINATE.check_points(&path, &format!("the place of `{id}`"), &[low, high])?;
-                    (low, high)
-                }
-            };
+            let (low, high) = self.shape_box(&KeyPath::item("body", i).then("shape"), &body.shape)?;
             corners.extend([low, high]);
         }
         Ok(bounds(&corners))
+    }
+
+    /// The box around a shape.
+    pub(super) fn shape_box(&self, path: &KeyPath, shape: &Shape) -> Resolved<(Point, Point)> {
+        match shape {
+            Shape::Rectangle(r) => Ok(rectangle(&path.then("rectangle"), r.min, r.max)?.bounds()),
+            Shape::Circle(c) => {
+                circle_in_range(&path.then("circle"), c)?;
+                let (center, half) = (Point::from(c.center), Vector::new(c.radius, c.radius));
+                Ok((center - half, center + half))
+            }
+            Shape::Polygon(polygon) => {
+                let corners = points(&polygon.exterior);
+                COORDINATE.check_points(&path.then("polygon"), "a corner of the polygon", &corners)?;
+                Ok(bounds(&corners))
+            }
+            Shape::Svg(id) => {
+                let path = path.then("svg");
+                let (low, high) = self.drawing(&path, id)?.bounds(id).map_err(at(&path))?;
+                COORDINATE.check_points(&path, &format!("the place of `{id}`"), &[low, high])?;
+                Ok((low, high))
+            }
+        }
     }
 
     pub(super) fn drawing(&self, path: &KeyPath, id: &str) -> Resolved<&'d LoadedDrawing> {
