@@ -28,6 +28,11 @@ pub fn is_left_of(a: Point, b: Point, point: Point) -> bool {
 /// Whether the closed segments `a`–`b` and `c`–`d` share a point, decided exactly.
 #[inline]
 pub fn segments_touch(a: Point, b: Point, c: Point, d: Point) -> bool {
+    // Most pairs that are asked about are far from each other.
+    let apart = |p: f64, q: f64, r: f64, s: f64| p.max(q) < r.min(s) || p.min(q) > r.max(s);
+    if apart(a.x, b.x, c.x, d.x) || apart(a.y, b.y, c.y, d.y) {
+        return false;
+    }
     let (abc, abd) = (orientation(a, b, c), orientation(a, b, d));
     let (cda, cdb) = (orientation(c, d, a), orientation(c, d, b));
     if abc == 0.0 && abd == 0.0 && cda == 0.0 && cdb == 0.0 {

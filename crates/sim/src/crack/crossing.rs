@@ -98,7 +98,7 @@ fn is_left_at_vertex(incoming: i32, outgoing: i32, turn: i32, least: i32) -> boo
 /// Whether the bounding boxes of the segments `p`–`q` and `a`–`b` are disjoint. Asked before the exact test, because
 /// most segments in the neighbourhood of a particle are far from its line to a node.
 #[inline]
-fn apart(p: Point, q: Point, a: Point, b: Point) -> bool {
+pub(crate) fn apart(p: Point, q: Point, a: Point, b: Point) -> bool {
     p.x.max(q.x) < a.x.min(b.x)
         || p.x.min(q.x) > a.x.max(b.x)
         || p.y.max(q.y) < a.y.min(b.y)

@@ -12,11 +12,12 @@
 //! Where ties hold the two sides of a node together until the tip has passed it, nothing is shared: the pair is split
 //! as if the crack went on straight ahead.
 
-use crate::crack::crossing::{Meeting, Segment, Side, meeting};
+use crate::crack::crossing::{Meeting, Segment, Side, apart, meeting};
 use crate::crack::split::{Split, runs_through};
 use fissure_plane::{Point, Vector, distance_to_segment, orientation};
 use fissure_scene::{Kernel, TipDivision};
 use rustc_hash::FxHashMap;
+use smallvec::SmallVec;
 
 /// What a line crosses: sorted (crack, side of the particle); empty: nothing.
 pub(crate) type CrossedSet = Vec<(u32, Side)>;
@@ -105,6 +106,9 @@ pub(crate) struct Share {
     pub(crate) gradient: Vector,
 }
 
+/// The shares of a pair: hardly ever more than two.
+pub(crate) type Shares = SmallVec<[Share; 2]>;
+
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct TipRay {
     position: Point,
@@ -120,6 +124,8 @@ struct Line {
     kinds: Vec<SegmentKind>,
     /// Segment of the crack that each prepared one is, or carries on.
     of: Vec<u32>,
+    /// The last segment of the crack.
+    last: u32,
     /// Whether each is so near to a tip that the tip says how it divides: see [`divide`].
     at_tip: Vec<bool>,
     /// Whether it has a continuation beyond a junction.
@@ -138,7 +144,7 @@ impl Line {
         };
         // A crack has got new points at its ends, if any: what is between stays.
         let same = |now: usize, was: usize| self.part(now) == before.part(was);
-        let [now, was] = [self, before].map(|line| line.of.iter().max().map_or(0, |&last| last as usize + 1));
+        let [now, was] = [self, before].map(|line| line.last as usize + 1);
         let first = (0..now.min(was)).take_while(|&k| same(k, k)).count();
         let last = (0..now.min(was) - first).take_while(|&k| same(now - 1 - k, was - 1 - k)).count();
         let has = |line: &Self, part| (0..line.segments.len()).any(|k| line.part(k) == part);
@@ -165,20 +171,39 @@ impl Line {
         (self.segments[k], self.kinds[k], self.at_tip[k])
     }
 
-    /// What the way from `particle` to `node` meets of those of `segments` (line, segment) whose kind `counts`.
+    /// What the way from `particle` to `node` meets of those of its `segments` whose kind `counts`.
     fn meeting(
         &self,
-        segments: &[(u32, u32)],
+        segments: &[Listed],
         particle: Point,
         node: Point,
         counts: impl Fn(SegmentKind) -> bool,
     ) -> Meeting {
-        let counting = segments.iter().filter(|s| counts(self.kinds[s.1 as usize]));
-        let segment = |&(_, number): &(u32, u32)| {
-            let (a, b) = self.segments[number as usize];
-            Segment { number, a, b }
-        };
-        meeting(particle, node, counting.map(segment))
+        let near = segments.iter().filter(|s| !s.is_apart(particle, node) && counts(self.kinds[s.segment as usize]));
+        meeting(particle, node, near.map(|s| Segment { number: s.segment, a: s.a, b: s.b }))
+    }
+}
+
+/// A segment in the list of a cell. Most ways are far from most segments of their cell; with its ends in the list that
+/// is seen without a look at its line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Listed {
+    line: u32,
+    segment: u32,
+    a: Point,
+    b: Point,
+}
+
+impl Listed {
+    /// Lists rise by this.
+    fn key(&self) -> (u32, u32) {
+        (self.line, self.segment)
+    }
+
+    /// Whether the way from `particle` to `node` cannot meet it.
+    #[inline]
+    fn is_apart(&self, particle: Point, node: Point) -> bool {
+        apart(particle, node, self.a, self.b)
     }
 }
 
@@ -213,7 +238,7 @@ pub(crate) struct Division {
     reach: f64,
     /// Line and segment by cell, rising. Cells come from the scene, not from a stranger, so the hash need not be a
     /// strong one.
-    buckets: FxHashMap<(i64, i64), Vec<(u32, u32)>>,
+    buckets: FxHashMap<(i64, i64), Vec<Listed>>,
     has_junctions: bool,
 }
 
@@ -302,10 +327,11 @@ impl Division {
     /// Puts the segments of a line from `first` on into the buckets.
     fn put_in(&mut self, line: usize, first: usize) {
         for segment in first..self.lines[line].segments.len() {
-            let entry = (line as u32, segment as u32);
-            for cell in self.cells_of(self.lines[line].segments[segment]) {
+            let (a, b) = self.lines[line].segments[segment];
+            let listed = Listed { line: line as u32, segment: segment as u32, a, b };
+            for cell in self.cells_of((a, b)) {
                 let bucket = self.buckets.entry(cell).or_default();
-                bucket.insert(bucket.partition_point(|&other| other < entry), entry);
+                bucket.insert(bucket.partition_point(|other| other.key() < listed.key()), listed);
             }
         }
     }
@@ -315,7 +341,7 @@ impl Division {
         for segment in first..self.lines[line].segments.len() {
             for cell in self.cells_of(self.lines[line].segments[segment]) {
                 let Some(bucket) = self.buckets.get_mut(&cell) else { continue };
-                bucket.retain(|&(l, s)| l as usize != line || (s as usize) < first);
+                bucket.retain(|s| s.line as usize != line || (s.segment as usize) < first);
                 if bucket.is_empty() {
                     self.buckets.remove(&cell);
                 }
@@ -323,7 +349,7 @@ impl Division {
         }
     }
 
-    fn bucket(&self, point: Point) -> &[(u32, u32)] {
+    fn bucket(&self, point: Point) -> &[Listed] {
         let key = ((point.x / self.cell_size).floor() as i64, (point.y / self.cell_size).floor() as i64);
         self.buckets.get(&key).map_or(&[], Vec::as_slice)
     }
@@ -342,18 +368,26 @@ impl Division {
     /// Segments of a crack around `point`, rising: all within [`Division::surroundings`], some beside, and always the
     /// first and the last one, whose ends may have moved on since the division was made.
     pub(crate) fn segments_around(&self, crack: u32, point: Point) -> Vec<usize> {
-        let Some(index) = self.lines.iter().position(|line| line.crack == crack) else { return Vec::new() };
-        let of = &self.lines[index].of;
-        let mut segments: Vec<usize> = vec![0, of.iter().max().map_or(0, |&last| last as usize)];
+        let Some(index) = self.line_of(crack) else { return Vec::new() };
+        let Line { of, last, .. } = &self.lines[index];
+        let mut segments: Vec<usize> = vec![0, *last as usize];
         for (i, j) in (-1..=1).flat_map(|i| (-1..=1).map(move |j| (i, j))) {
             let bucket = self.bucket(point + Vector::new(f64::from(i), f64::from(j)) * self.cell_size);
-            let first = bucket.partition_point(|&(line, _)| (line as usize) < index);
-            let own = bucket[first..].iter().take_while(|&&(line, _)| line as usize == index);
-            segments.extend(own.map(|&(_, segment)| of[segment as usize] as usize));
+            let first = bucket.partition_point(|s| (s.line as usize) < index);
+            let own = bucket[first..].iter().take_while(|s| s.line as usize == index);
+            segments.extend(own.map(|s| of[s.segment as usize] as usize));
         }
         segments.sort_unstable();
         segments.dedup();
         segments
+    }
+
+    /// Number of the line of a crack.
+    fn line_of(&self, crack: u32) -> Option<usize> {
+        // Where all cracks are given, they have the numbers of their lines.
+        let own = crack as usize;
+        let is_own = self.lines.get(own).is_some_and(|line| line.crack == crack);
+        if is_own { Some(own) } else { self.lines.iter().position(|line| line.crack == crack) }
     }
 
     /// Whether a particle at `point` may have a divided pair at all.
@@ -369,8 +403,7 @@ impl Division {
     /// Whether a crack may divide the pair of a particle at `point` and any node of the box from `low` to `high`, which
     /// holds the particle. When it says no, no pair is divided.
     pub(crate) fn may_divide(&self, point: Point, low: Point, high: Point) -> bool {
-        self.bucket(point).iter().any(|&(line, segment)| {
-            let (a, b) = self.lines[line as usize].segments[segment as usize];
+        self.bucket(point).iter().any(|&Listed { a, b, .. }| {
             if a.x.max(b.x) < low.x || a.x.min(b.x) > high.x || a.y.max(b.y) < low.y || a.y.min(b.y) > high.y {
                 return false;
             }
@@ -383,8 +416,8 @@ impl Division {
     /// Calls `visit` with (crack, segment of it) for every segment that the line from `particle` to `node` crosses; a
     /// continuation counts as the segment it carries on.
     pub(crate) fn for_each_crossed(&self, particle: Point, node: Point, mut visit: impl FnMut(u32, usize)) {
-        for segments in self.bucket(particle).chunk_by(|s, t| s.0 == t.0) {
-            let line = &self.lines[segments[0].0 as usize];
+        for segments in self.bucket(particle).chunk_by(|s, t| s.line == t.line) {
+            let line = &self.lines[segments[0].line as usize];
             for segment in line.meeting(segments, particle, node, |kind| kind != SegmentKind::AlongTrunk).crossed {
                 visit(line.crack, line.of[segment as usize] as usize);
             }
@@ -395,14 +428,14 @@ impl Division {
     /// those that `counts`; none where there is none, or several. Of what is drawn ahead of several tips it is the
     /// nearest tip's: between tips that face each other both are there.
     pub(crate) fn split_square(&self, center: Point, half: f64, counts: impl Fn(u32) -> bool) -> Option<Split> {
-        let is_part = |line: &Line, segment: u32| {
-            matches!(line.kinds[segment as usize], SegmentKind::Real | SegmentKind::AheadOfTip)
-                && runs_through(center, half, line.segments[segment as usize])
+        let is_part = |line: &Line, s: &Listed| {
+            matches!(line.kinds[s.segment as usize], SegmentKind::Real | SegmentKind::AheadOfTip)
+                && runs_through(center, half, (s.a, s.b))
         };
         let mut chosen: Option<(f64, Vec<(Point, Point)>)> = None;
-        for of_line in self.bucket(center).chunk_by(|s, t| s.0 == t.0) {
-            let line = &self.lines[of_line[0].0 as usize];
-            let within: Vec<u32> = of_line.iter().map(|s| s.1).filter(|&segment| is_part(line, segment)).collect();
+        for of_line in self.bucket(center).chunk_by(|s, t| s.line == t.line) {
+            let line = &self.lines[of_line[0].line as usize];
+            let within: Vec<u32> = of_line.iter().filter(|s| is_part(line, s)).map(|s| s.segment).collect();
             if within.is_empty() || !counts(line.crack) {
                 continue;
             }
@@ -430,20 +463,36 @@ impl Division {
     }
 
     /// The shares of the pair (`particle`, `node`) in the fields of the node; fractions add up to 1. Never empty.
-    pub(crate) fn pair(&self, particle: Point, node: Point) -> Vec<Share> {
+    pub(crate) fn pair(&self, particle: Point, node: Point) -> Shares {
         self.shares(particle, node, self.particle_spacing)
     }
 
-    fn shares(&self, particle: Point, node: Point, domain: f64) -> Vec<Share> {
-        let mut shares = vec![Share { crossed: Vec::new(), fraction: 1.0, gradient: Vector::zeros() }];
-        let bucket = self.bucket(particle);
+    /// What may divide the pairs of a particle at `particle` and nodes within the box from `low` to `high`.
+    pub(crate) fn around(&self, particle: Point, low: Point, high: Point) -> Around<'_> {
+        let (low, high) = (low.inf(&particle), high.sup(&particle));
+        let bucket = self.bucket(particle).iter();
+        Around { division: self, particle, segments: bucket.filter(|s| !s.is_apart(low, high)).copied().collect() }
+    }
+
+    fn shares(&self, particle: Point, node: Point, domain: f64) -> Shares {
+        self.shares_across(self.bucket(particle), particle, node, domain)
+    }
+
+    /// As [`Division::shares`], `bucket` being the segments that the way may meet.
+    fn shares_across(&self, bucket: &[Listed], particle: Point, node: Point, domain: f64) -> Shares {
+        let mut shares = Shares::new();
+        shares.push(Share { crossed: Vec::new(), fraction: 1.0, gradient: Vector::zeros() });
+        // So it is with most pairs.
+        if bucket.iter().all(|s| s.is_apart(particle, node)) {
+            return shares;
+        }
         // Continuations beyond a junction need to know what else is crossed, so they come in a second round.
         let mut crossed_whole: Vec<u32> = Vec::new();
         let rounds = if self.has_junctions { 2 } else { 1 };
         for round in 0..rounds {
             let mut rest = bucket;
-            while let Some(&(line_index, _)) = rest.first() {
-                let (segments, others) = rest.split_at(rest.iter().take_while(|s| s.0 == line_index).count());
+            while let Some(&Listed { line: line_index, .. }) = rest.first() {
+                let (segments, others) = rest.split_at(rest.iter().take_while(|s| s.line == line_index).count());
                 rest = others;
                 let line = &self.lines[line_index as usize];
                 if (round == 1) != line.has_junction {
@@ -460,9 +509,31 @@ impl Division {
     }
 }
 
+/// What may divide the pairs of one particle: see [`Division::around`]. A particle has many pairs, and of the segments
+/// in its cell most are far from all of them.
+#[derive(Debug)]
+pub(crate) struct Around<'a> {
+    division: &'a Division,
+    particle: Point,
+    segments: SmallVec<[Listed; 16]>,
+}
+
+impl Around<'_> {
+    /// The shares of the pair of the particle and `node`: see [`Division::pair`].
+    pub(crate) fn pair(&self, node: Point) -> Shares {
+        self.division.shares_across(&self.segments, self.particle, node, self.division.particle_spacing)
+    }
+
+    /// Whether any of it is the continuation of a crack beyond the one that it ends on.
+    pub(crate) fn is_beyond_junction(&self) -> bool {
+        let kind = |s: &Listed| self.division.lines[s.line as usize].kinds[s.segment as usize];
+        self.segments.iter().any(|s| matches!(kind(s), SegmentKind::BeyondJunction(_)))
+    }
+}
+
 /// Splits every share by one more crack.
-fn split(shares: Vec<Share>, crack: u32, cut: PairCut) -> Vec<Share> {
-    let mut result = Vec::with_capacity(2 * shares.len());
+fn split(shares: Shares, crack: u32, cut: PairCut) -> Shares {
+    let mut result = Shares::new();
     for share in shares {
         let mut far = share.clone();
         far.crossed.push((crack, cut.side));
@@ -525,7 +596,8 @@ fn prepare(line: &CrackLine, tip_division: TipDivision, cut: TipCut, cell_size: 
     let at_tip = of.iter().zip(&kinds).map(|(&of, &kind)| kind == SegmentKind::AlongTrunk || of_line[of as usize]);
     let at_tip = at_tip.collect();
     let around_start = around_fork(reach, cell_size);
-    Line { crack: line.crack, segments, tips, cut, kinds, of, at_tip, has_junction, around_start }
+    let last = n as u32 - 2;
+    Line { crack: line.crack, segments, tips, cut, kinds, of, last, at_tip, has_junction, around_start }
 }
 
 fn around_fork(reach: f64, cell_size: f64) -> f64 {
@@ -590,7 +662,7 @@ fn ramp(behind: f64, width: f64) -> (f64, f64) {
 /// lies ahead of its tip.
 fn divide(
     line: &Line,
-    segments: &[(u32, u32)],
+    segments: &[Listed],
     particle: Point,
     node: Point,
     cell_size: f64,
@@ -700,6 +772,10 @@ mod tests {
                 let is_outside = |p: Point| boxes.iter().all(|(low, high)| !(p >= *low && p <= *high));
                 for &(particle, node) in pairs.iter().filter(|pair| is_outside(pair.0)) {
                     prop_assert_eq!(before.pair(particle, node), changed.pair(particle, node));
+                }
+                for &(particle, node) in &pairs {
+                    let around = changed.around(particle, node, node);
+                    prop_assert_eq!(around.pair(node), changed.pair(particle, node));
                 }
                 let fresh = division(&lines, TipDivision::PartlyCut, cut);
                 prop_assert_eq!(&changed.lines, &fresh.lines);

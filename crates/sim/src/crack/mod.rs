@@ -265,6 +265,12 @@ impl Crack {
         (low - place).sup(&(place - high)).sup(&Vector::zeros()).norm()
     }
 
+    /// Whether the way from `from` to `to` comes into the box around the crack; it meets none of it otherwise.
+    pub(crate) fn may_meet(&self, from: Point, to: Point) -> bool {
+        let [low, high] = self.bounds;
+        from.inf(&to) <= high && from.sup(&to) >= low
+    }
+
     /// What is left of the increment that an end is on its way through [m]; none between increments.
     fn left_of_increment(&self, end: End) -> Option<f64> {
         self.ways[slot(end)].target.map(|target| (target - self.tip_position(end)).norm())

@@ -16,6 +16,9 @@ const PARTED: f64 = 8.0;
 /// other.
 const TIP_TO_TIP: f64 = 0.5;
 
+/// What is farther than this many ligaments is farther than one, however the distance is rounded.
+const FAR: f64 = 1.001;
+
 /// A place where a tip ends.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Barrier {
@@ -92,7 +95,7 @@ pub(super) fn first_barrier(cracks: &Cracks, id: TipId, region: &Region, from: P
     let guide = cracks.tip(id).and_then(|tip| tip.guide.as_ref());
     for (other, crack) in cracks.iter().enumerate() {
         let is_passed = other != id.crack && (own.crosses || guide.is_some_and(|guide| guide.will_join(other)));
-        if crack.body != own.body || is_passed {
+        if crack.body != own.body || is_passed || !crack.may_meet(from, to) {
             continue;
         }
         let n = crack.points.len();
@@ -131,7 +134,7 @@ pub(super) fn beside(cracks: &Cracks, id: TipId, toward: Vector, h: f64) -> Opti
         ENDS.into_iter().any(|end| met(end) && c.end(end) == CrackEnd::Junction { crack: id.crack as u32 })
     };
     for (other, line) in cracks.iter().enumerate().filter(|(_, c)| c.body == crack.body && !ended_here(c)) {
-        if crack.crosses && other != id.crack {
+        if crack.crosses && other != id.crack || line.least_distance(from) > FAR * LAST_LIGAMENT * h {
             continue;
         }
         if !has_parted && other != id.crack && is_twin(other, line) {

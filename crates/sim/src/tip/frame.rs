@@ -30,39 +30,61 @@ pub(crate) fn tip_of(cracks: &Cracks, id: TipId, points: &[Point], cell_size: f6
     (tip, if length > 0.0 { ahead / length } else { cracks.ahead(id, DIRECTION_LENGTH * cell_size) })
 }
 
-/// The points around a tip that [`side_of`] asks for, of places within `radius` [m] of it: what is nearest to such a
-/// place lies within twice that. They run as the crack does; `place` (crack, number of the point) says where they are.
-pub(crate) fn line_around(
-    cracks: &Cracks,
-    id: TipId,
-    radius: f64,
-    place: impl Fn(usize, usize) -> Point,
-) -> Vec<Point> {
-    let mut points = cracks.behind_at(id, 2.0 * radius, place);
-    if id.end == End::End {
-        points.reverse();
-    }
-    points
+/// A crack around one of its tips, to tell which of its faces places near the tip see.
+#[derive(Debug, Clone)]
+pub(crate) struct LineAround {
+    /// As the crack runs.
+    points: Vec<Point>,
+    /// Way along the crack from the tip to each of them, the tip first [m].
+    ways: Vec<f64>,
+    end: End,
 }
 
-/// The face of the crack through `points` that a place sees, as a side of the frame of one of its tips (`ahead`: e1):
-/// that of the nearest segment behind the tip, of the tip's own line ahead. A place on the crack is above it, as in
-/// [`crate::crack::crossing`].
-pub(crate) fn side_of(points: &[Point], end: End, ahead: Vector, place: Point) -> Side {
-    let n = points.len();
-    let tip = if end == End::Start { points[0] } else { points[n - 1] };
-    let arm = place - tip;
-    if arm.dot(&ahead) >= 0.0 {
-        return if ahead.perp(&arm) >= 0.0 { Side::Above } else { Side::Below };
-    }
-    let mut nearest = (f64::INFINITY, 0);
-    for k in 0..n - 1 {
-        let segment = if end == End::End { n - 2 - k } else { k };
-        let distance = fissure_plane::distance_to_segment(place, points[segment], points[segment + 1]);
-        if distance < nearest.0 {
-            nearest = (distance, segment);
+/// What two distances have to differ by, as part of them, to differ whatever rounding has done to them.
+const SURELY: f64 = 1e-9;
+
+impl LineAround {
+    /// Around a tip, for places within `radius` [m] of it: what is nearest to such a place lies within twice that.
+    /// `place` (crack, number of the point) says where its points are.
+    pub(crate) fn new(cracks: &Cracks, id: TipId, radius: f64, place: impl Fn(usize, usize) -> Point) -> Self {
+        let mut points = cracks.behind_at(id, 2.0 * radius, place);
+        let mut ways = vec![0.0];
+        ways.extend(points.windows(2).scan(0.0, |way, w| {
+            *way += (w[1] - w[0]).norm();
+            Some(*way)
+        }));
+        if id.end == End::End {
+            points.reverse();
         }
+        Self { points, ways, end: id.end }
     }
-    let side = side_of_crack(points, nearest.1, place);
-    if end == End::End { side } else { side.opposite() }
+
+    /// The face that a place sees, as a side of the frame of the tip (`ahead`: e1): that of the nearest segment behind
+    /// the tip, of the tip's own line ahead. A place on the crack is above it, as in [`crate::crack::crossing`].
+    pub(crate) fn side_of(&self, ahead: Vector, place: Point) -> Side {
+        let Self { points, ways, end } = self;
+        let n = points.len();
+        let tip = if *end == End::Start { points[0] } else { points[n - 1] };
+        let arm = place - tip;
+        if arm.dot(&ahead) >= 0.0 {
+            return if ahead.perp(&arm) >= 0.0 { Side::Above } else { Side::Below };
+        }
+        let mut nearest = (f64::INFINITY, 0);
+        let mut k = 0;
+        while k < n - 1 {
+            let segment = if *end == End::End { n - 2 - k } else { k };
+            let distance = fissure_plane::distance_to_segment(place, points[segment], points[segment + 1]);
+            if distance < nearest.0 {
+                nearest = (distance, segment);
+            }
+            // No part of the crack is nearer than this one is, less the way there.
+            let reached = ways[k] + (distance - nearest.0) - SURELY * distance;
+            k += 1;
+            while k < n - 1 && ways[k + 1] < reached {
+                k += 1;
+            }
+        }
+        let side = side_of_crack(points, nearest.1, place);
+        if *end == End::End { side } else { side.opposite() }
+    }
 }

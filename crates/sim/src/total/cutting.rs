@@ -90,18 +90,20 @@ impl Lattice {
         };
         let near = self.division.is_near(place);
         let nodes = self.grid.stencil(&stencil);
+        let last = stencil.width - 1;
         let mut entries = Vec::with_capacity(stencil.width * stencil.width);
+        let around = near.then(|| self.division.around(from, nodes.place(0, 0), nodes.place(last, last)));
         for b in 0..stencil.width {
             for a in 0..stencil.width {
                 let (w, g) = (stencil.weight(a, b), slopes.weight_gradient(a, b));
                 let Some(node) = nodes.at(a, b) else { continue };
                 let guest = self.owners.guest(node, body);
-                if !near {
+                let Some(around) = &around else {
                     let field = self.layout.fields.find_or_add(node, guest, &CrossedSet::new());
                     entries.push(Entry { field: field as u32, weight: w, gradient: g });
                     continue;
-                }
-                for share in self.shares(body, from, nodes.place(a, b)) {
+                };
+                for share in self.shares_of(body, around, nodes.place(a, b)) {
                     let field = self.layout.fields.find_or_add(node, guest, &share.crossed);
                     let gradient = g * share.fraction + share.gradient * w;
                     entries.push(Entry { field: field as u32, weight: w * share.fraction, gradient });

@@ -6,7 +6,7 @@ use super::riders::Riders;
 use super::run::Run;
 use crate::SimulationError;
 use crate::crack::cracks::Cracks;
-use crate::crack::division::{Division, Share, TipCut};
+use crate::crack::division::{Around, Division, Shares, TipCut};
 use crate::grid::Grid;
 use crate::grid::fields::Fields;
 use crate::grid::kernel;
@@ -41,6 +41,8 @@ pub(super) struct Lattice {
     pub(super) least_mass: f64,
     /// One over the mass of each field [m/kg]; zero where there is none.
     pub(super) inverse_mass: Vec<f64>,
+    /// Nodes of which a field has got mass, or has lost all, since this was last asked for.
+    pub(super) turned: Vec<usize>,
     kernel: Kernel,
     tip_division: TipDivision,
     /// How far ahead of a tip nodes are split, in cells.
@@ -112,6 +114,7 @@ impl Lattice {
             ),
             layout,
             inverse_mass: Vec::new(),
+            turned: Vec::new(),
             kernel,
             tip_division,
             split_ahead,
@@ -131,13 +134,22 @@ impl Lattice {
 
     /// The shares of a pair of `place`, which belongs to `body`, and a node at `node`. A crack goes on beyond its
     /// mouth, where another body may lie that it does not cut.
-    pub(super) fn shares(&self, body: u32, place: Point, node: Point) -> Vec<Share> {
-        let shares = self.division.pair(place, node);
+    pub(super) fn shares(&self, body: u32, place: Point, node: Point) -> Shares {
+        self.of_body(body, self.division.pair(place, node))
+    }
+
+    /// As [`Lattice::shares`], `around` being what may divide pairs of the place.
+    pub(super) fn shares_of(&self, body: u32, around: &Around<'_>, node: Point) -> Shares {
+        self.of_body(body, around.pair(node))
+    }
+
+    /// What is left of `shares` without the cracks of other bodies.
+    fn of_body(&self, body: u32, shares: Shares) -> Shares {
         let is_own = |crack: u32| self.body_of_crack[crack as usize] == body;
         if shares.iter().all(|share| share.crossed.iter().all(|&(crack, _)| is_own(crack))) {
             return shares;
         }
-        let mut own: Vec<Share> = Vec::with_capacity(shares.len());
+        let mut own = Shares::new();
         for mut share in shares {
             share.crossed.retain(|&(crack, _)| is_own(crack));
             match own.iter_mut().find(|other| other.crossed == share.crossed) {

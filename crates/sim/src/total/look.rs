@@ -13,7 +13,7 @@ use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::crossing::Side;
 use crate::solver::Observed;
 use crate::tip::bend::Bend;
-use crate::tip::frame::{line_around, side_of, tip_of, turn};
+use crate::tip::frame::{LineAround, tip_of, turn};
 use crate::tip::zone::{FaceContact, FaceLoad, QuadraturePoint, TipZone};
 use fissure_plane::{Matrix, Point, Vector};
 use fissure_scene::End;
@@ -50,15 +50,15 @@ impl Observed for Look<'_> {
         let center = (tip - particles.anchor) / s;
         let reach = (radius / s).ceil() as i32 + 1;
         let center = [center.x.floor() as i32, center.y.floor() as i32];
-        let mut found: Vec<(usize, Matrix)> = Vec::new();
+        let mut found: Vec<(usize, Matrix, ParticleRates)> = Vec::new();
         let mut mean = Matrix::zeros();
         let mut reader = lattice.reader();
         let (low, high) = (center.map(|c| c.saturating_sub(reach)), center.map(|c| c.saturating_add(reach)));
         for p in particles.within(low, high) {
             if (particles.rest[p] - tip).norm_squared() < radius * radius && particles.body[p] == line.body {
-                let h = reader.strain(p, &motion.displacement);
+                let (h, rates) = reader.strain_and_rates(p, motion);
                 mean += h;
-                found.push((p, h));
+                found.push((p, h, rates));
             }
         }
         let mean = mean / found.len().max(1) as f64;
@@ -67,9 +67,9 @@ impl Observed for Look<'_> {
         let back = rotation.transpose();
         let (_, back_minus_one) = turn(2.0 + mean.m11 + mean.m22, mean.m12 - mean.m21);
         let frame = Matrix::new(ahead.x, ahead.y, -ahead.y, ahead.x);
-        let around = line_around(cracks, id, radius, |crack, point| cracks[crack].points[point]);
+        let around = LineAround::new(cracks, id, radius, |crack, point| cracks[crack].points[point]);
         let mut points = Vec::with_capacity(found.len());
-        for (p, h) in found {
+        for (p, h, rates) in found {
             let e = lattice.material(p);
             let into = |m: Matrix| frame * m * frame.transpose();
             let part = |h: Matrix, rates: ParticleRates, (share, way): (f64, Vector)| {
@@ -80,7 +80,7 @@ impl Observed for Look<'_> {
                 QuadraturePoint {
                     place: frame * arm,
                     displacement: frame * (back * (displacement + h * way) + back_minus_one * arm),
-                    side: side_of(&around, id.end, ahead, place),
+                    side: around.side_of(ahead, place),
                     volume: particles.volume[p] * share,
                     stress: into(back * crate::first_piola_stress(&h, e.mu, e.lambda)),
                     gradient: into(back * h + back_minus_one),
@@ -93,7 +93,7 @@ impl Observed for Look<'_> {
                 }
             };
             let whole = (1.0, Vector::zeros());
-            points.push(part(h, reader.rates(p, motion), lattice.layout.cut.part_of(p).unwrap_or(whole)));
+            points.push(part(h, rates, lattice.layout.cut.part_of(p).unwrap_or(whole)));
             if let (Some(h), Some(rates)) = (reader.far_strain(p, &motion.displacement), reader.far_rates(p, motion)) {
                 points.push(part(h, rates, lattice.layout.far.part_of(p).unwrap_or(whole)));
             }

@@ -341,7 +341,8 @@ impl Solver for Total {
             lost += self.lattice.seat_more_riders(&around, &mut self.motion);
             boxes.extend(around);
         }
-        let has_mouthed = self.probes.refresh(&self.lattice, cracks, changed, &boxes);
+        let turned = std::mem::take(&mut self.lattice.turned);
+        let has_mouthed = self.probes.refresh(&self.lattice, cracks, changed, &boxes, &turned);
         let near = Near::new(&self.lattice, &boxes, cracks, changed, &points_before);
         self.loads.refresh(&near, &self.scene, &self.lattice, cracks);
         self.supports.refresh(&near, &self.scene, &self.lattice);

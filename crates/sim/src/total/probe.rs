@@ -20,6 +20,10 @@ pub(super) struct Probe {
     pub(super) body: u32,
     /// (field, weight).
     pub(super) entries: Vec<(u32, f64)>,
+    /// Whether these are fields of the nodes around it. They stay what they are while nothing changes there; what is
+    /// carried on from a particle may change with what is farther off, as may what has been read.
+    #[serde(skip)]
+    pub(super) is_local: bool,
 }
 
 impl Vertex for Probe {
@@ -67,13 +71,25 @@ const ROUND_OFF: f64 = 1e-9;
 impl Lattice {
     /// A probe at `rest` that belongs to the material of `body` at `nudged`.
     pub(super) fn probe(&self, body: u32, rest: Point, nudged: Point) -> Probe {
-        Probe { rest, nudged, body, entries: self.probe_entries(body, rest, nudged) }
+        let (entries, is_local) = match self.local_entries(body, rest, nudged) {
+            Some(local) => local,
+            None => (self.carried_entries(body, rest, nudged), false),
+        };
+        Probe { rest, nudged, body, entries, is_local }
     }
 
     /// (field, weight) of a probe. Where a node has no material on the probe's side, the fields of the nearest
     /// particle's cell are carried on to the probe instead; near a crack linearly: w_ip + ∇w_ip · (X − X_p), exact for
     /// rigid motion.
     pub(super) fn probe_entries(&self, body: u32, rest: Point, nudged: Point) -> Vec<(u32, f64)> {
+        let local = self.local_entries(body, rest, nudged);
+        local.map_or_else(|| self.carried_entries(body, rest, nudged), |(entries, _)| entries)
+    }
+
+    /// As [`Lattice::probe_entries`], and whether they depend on nothing but what is around: beyond a junction pairs
+    /// are parted by what the crack does that was met there, wherever it does it. None where a node has no material on
+    /// the probe's side.
+    fn local_entries(&self, body: u32, rest: Point, nudged: Point) -> Option<(Vec<(u32, f64)>, bool)> {
         let stencil = self.stencil(rest);
         let nodes = self.grid.stencil(&stencil);
         let mass = |field: usize| self.layout.mass[field];
@@ -84,51 +100,52 @@ impl Lattice {
             all.into_iter().any(|field| mass(field) > 0.0 && fields.guest(field) == guest(node))
         };
         let mut entries = Vec::with_capacity(8);
+        let last = stencil.width - 1;
+        let around = self.division.around(nudged, nodes.place(0, 0), nodes.place(last, last));
+        let mut is_local = !around.is_beyond_junction();
         for b in 0..stencil.width {
             for a in 0..stencil.width {
                 let w = stencil.weight(a, b);
                 if w <= 1e-14 {
                     continue;
                 }
-                let found = match nodes.at(a, b).filter(has_material) {
+                let (node, shares) = match nodes.at(a, b).filter(has_material) {
                     // On the last grid line of a body, up to rounding.
                     None if w <= ROUND_OFF => {
-                        nodes.near(a, b).find(has_material).map(|node| (node, self.grid.position(node)))
+                        let node = nodes.near(a, b).find(has_material)?;
+                        is_local = false;
+                        (node, self.shares(body, nudged, self.grid.position(node)))
                     }
-                    node => node.map(|node| (node, nodes.place(a, b))),
+                    node => (node?, self.shares_of(body, &around, nodes.place(a, b))),
                 };
-                let Some((node, place)) = found else { return self.carried_entries(body, rest, nudged) };
-                for share in self.shares(body, nudged, place) {
-                    match fields.find(node, guest(node), &share.crossed) {
-                        Some(field) if mass(field) > 0.0 => entries.push((field as u32, w * share.fraction)),
-                        _ => return self.carried_entries(body, rest, nudged),
-                    }
+                for share in shares {
+                    let field = fields.find(node, guest(node), &share.crossed);
+                    entries.push((field.filter(|&field| mass(field) > 0.0)? as u32, w * share.fraction));
                 }
             }
         }
-        entries
+        Some((entries, is_local))
     }
 
     fn carried_entries(&self, body: u32, rest: Point, nudged: Point) -> Vec<(u32, f64)> {
         let at = (rest - self.particles.anchor) / self.particles.spacing;
         let center = [at.x.floor() as i32, at.y.floor() as i32];
-        let mut nearest: Option<(bool, f64, usize)> = None;
+        let mut nearest = None;
         for reach in [2, 6] {
             let (low, high) = (center.map(|c| c.saturating_sub(reach)), center.map(|c| c.saturating_add(reach)));
             let own = |&p: &usize| self.particles.body[p] == body && self.layout.riders.host(p).is_none();
-            for p in self.particles.within(low, high).filter(own) {
-                let place = self.particles.rest[p];
-                let across = self.is_across(body, place, nudged);
-                let candidate = (across, (place - rest).norm_squared(), p);
-                if nearest.is_none_or(|n| candidate < n) {
-                    nearest = Some(candidate);
-                }
-            }
-            if matches!(nearest, Some((false, ..))) {
+            let with_distance = |p: usize| ((self.particles.rest[p] - rest).norm_squared(), p);
+            let mut found: Vec<(f64, usize)> =
+                self.particles.within(low, high).filter(own).map(with_distance).collect();
+            found.sort_unstable_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)));
+            // Across a crack only where all are.
+            let beside = found.iter().find(|(_, p)| !self.is_across(body, self.particles.rest[*p], nudged));
+            nearest = beside.or(found.first()).map(|&(_, p)| p);
+            if beside.is_some() {
                 break;
             }
         }
-        let Some((_, _, p)) = nearest else { return Vec::new() };
+        let Some(p) = nearest else { return Vec::new() };
         let offset = rest - self.particles.rest[p];
         let mut entries = Vec::with_capacity(8);
         if !self.division.is_near(self.particles.rest[p]) {

@@ -30,7 +30,7 @@ impl Lattice {
     }
 
     /// Probes of both faces of a crack that had those of `before`, which stay where nothing around them `has_changed`.
-    fn face_probes_after(&self, crack: &Crack, before: &mut Faces, has_changed: impl Fn(Point) -> bool) -> Faces {
+    fn face_probes_after(&self, crack: &Crack, before: &mut Faces, has_changed: impl Fn(&Probe) -> bool) -> Faces {
         let points = &crack.points;
         let added = points.len().saturating_sub(before[0].len());
         // By how much the numbers of the points have moved up. Its ends may have moved, the points between stay.
@@ -41,7 +41,7 @@ impl Lattice {
             new.extend((0..points.len()).map(|k| {
                 let nudged = self.nudged(crack, k, side);
                 match k.checked_sub(shift).and_then(|k| old.get_mut(k)) {
-                    Some(old) if old.rest == points[k] && old.nudged == nudged && !has_changed(old.rest) => {
+                    Some(old) if old.rest == points[k] && old.nudged == nudged && !has_changed(old) => {
                         Probe { entries: std::mem::take(&mut old.entries), ..*old }
                     }
                     _ => self.probe(crack.body, points[k], nudged),
@@ -52,7 +52,7 @@ impl Lattice {
     }
 
     /// Probe of one face at point `k` of a crack.
-    fn face_probe(&self, crack: &Crack, k: usize, side: Side) -> Probe {
+    pub(super) fn face_probe(&self, crack: &Crack, k: usize, side: Side) -> Probe {
         self.probe(crack.body, crack.points[k], self.nudged(crack, k, side))
     }
 
@@ -122,23 +122,35 @@ impl Probes {
         }
     }
 
-    /// Lays the probes anew that may have changed: the faces of the cracks with a `changed` end, and all within
-    /// `boxes`. Returns whether an outline has got a mouth.
+    /// Lays the probes anew that may have changed: of the faces of cracks with a `changed` end, and of all within
+    /// `boxes`. `turned`: nodes of which a field has got mass, or has lost all. Returns whether an outline has got a
+    /// mouth.
     pub(super) fn refresh(
         &mut self,
         lattice: &Lattice,
         cracks: &Cracks,
         changed: &[TipId],
         boxes: &[(Point, Point)],
+        turned: &[usize],
     ) -> bool {
         let within = |p: Point| boxes.iter().any(|(low, high)| p >= *low && p <= *high);
         let seen = Vector::repeat(SEEN * lattice.grid.cell_size);
         let sees = |p: Point| boxes.iter().any(|(low, high)| p >= low - seen && p <= high + seen);
+        let turned: Vec<Point> = turned.iter().map(|&node| lattice.grid.position(node)).collect();
+        let stencil = (lattice.reach() + 0.5) * lattice.grid.cell_size;
+        let has_changed = |probe: &Probe| {
+            if probe.is_local {
+                let is_beside = |node: &Point| (node - probe.rest).amax() < stencil;
+                within(probe.nudged) || within(probe.rest) || turned.iter().any(is_beside)
+            } else {
+                sees(probe.rest)
+            }
+        };
         for (index, crack) in cracks.iter().enumerate() {
             if index >= self.faces.len() {
                 self.faces.push(lattice.face_probes(crack));
             } else if changed.iter().any(|id| id.crack == index) || crack.points.iter().any(|&p| sees(p)) {
-                self.faces[index] = lattice.face_probes_after(crack, &mut self.faces[index], sees);
+                self.faces[index] = lattice.face_probes_after(crack, &mut self.faces[index], has_changed);
             }
         }
         for probe in self.outlines.vertices_mut().filter(|probe| within(probe.rest)) {

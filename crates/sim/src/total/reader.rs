@@ -118,7 +118,7 @@ impl<'a> Reader<'a> {
         [own, self.far_strain(particle, u).unwrap_or(own)]
     }
 
-    /// As [`Reader::rates`], of what of a particle lies across a crack, if there is any.
+    /// As the rates of [`Reader::strain_and_rates`], of what of a particle lies across a crack, if there is any.
     pub(super) fn far_rates(&self, particle: usize, fields: &Motion) -> Option<ParticleRates> {
         let mut rates = ParticleRates::default();
         self.far(particle)?.for_each(|e| rates.add(fields, e.field as usize, e.weight, e.gradient));
@@ -163,11 +163,15 @@ impl<'a> Reader<'a> {
         ParticleMotion { displacement, velocity, strain: gradient + self.lattice.layout.cut.misfit_of(particle) }
     }
 
-    /// Displacement, velocity, its gradient, and acceleration of a particle.
-    pub(super) fn rates(&mut self, particle: usize, fields: &Motion) -> ParticleRates {
-        let mut rates = ParticleRates::default();
-        self.for_each_entry(particle, |field, w, g| rates.add(fields, field, w, g));
-        rates
+    /// Displacement gradient H = F − I of a particle, and its displacement, velocity, the gradient of that, and
+    /// acceleration: all in one walk over its nodes.
+    pub(super) fn strain_and_rates(&mut self, particle: usize, fields: &Motion) -> (Matrix, ParticleRates) {
+        let (mut gradient, mut rates) = (Matrix::zeros(), ParticleRates::default());
+        self.for_each_entry(particle, |field, w, g| {
+            add_outer(&mut gradient, fields.displacement(field), g);
+            rates.add(fields, field, w, g);
+        });
+        (gradient + self.lattice.layout.cut.misfit_of(particle), rates)
     }
 }
 

@@ -259,6 +259,9 @@ impl Lattice {
             let kept = self.layout.mass[d] - t.mass_out;
             let kept = if kept < smallest { 0.0 } else { kept };
             let total = kept + t.mass_in;
+            if (self.layout.mass[d] > 0.0) != (total >= smallest) {
+                self.turned.push(self.layout.fields.node(d));
+            }
             if total < smallest {
                 self.layout.mass[d] = 0.0;
                 motion.velocity[0][d] = 0.0;

@@ -2,14 +2,18 @@
 #![allow(clippy::unwrap_used)]
 
 use super::field_vectors::FieldVectors;
+use super::probe::Probe;
 use super::{Total, internal_forces, stability};
 use crate::crack::cracks::{Cracks, TipId};
+use crate::crack::crossing::Side;
 use crate::crack::tip::Tip;
 use crate::particles::Particles;
 use crate::solver::{SlidingTips, Snapshot, Solver};
 use crate::test_scenes;
 use fissure_plane::circle_ring;
-use fissure_scene::{End, Formulation, Kernel, Point, Region, Scene, Selection, Support, TipDivision, Vector};
+use fissure_scene::{
+    CrackEnd, End, Formulation, Kernel, Point, Region, Scene, Selection, Support, TipDivision, Vector,
+};
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
@@ -343,6 +347,40 @@ fn a_tip_on_its_way_is_cut_as_it_was() {
         assert_eq!(total.lattice.field_count(), fields);
         assert_eq!(total.lattice.mass(), mass);
     }
+}
+
+/// Truth: faces laid anew. What a recut leaves alone of them is the same, be it beside the tip, beside another crack,
+/// or where one crack ends on another.
+#[test]
+fn faces_that_stay_are_as_laid_anew() {
+    let mut scene = cracked_plate();
+    test_scenes::add_crack(&mut scene, &[[2.4, 1.2], [2.42, 2.9]]);
+    let (mut total, mut cracks) = solver(&scene);
+    let mut kept = 0;
+    for k in 0..24 {
+        let before = total.probes.faces.clone();
+        let tip = cracks.position(TIP);
+        let way = Vector::new(0.21, if k % 3 == 0 { 0.08 } else { -0.05 }) * scene.cell_size;
+        if tip.x + way.x < 2.4 {
+            cracks.grow(TIP, &[tip + way]);
+        } else if cracks.end(TIP) == CrackEnd::Tip {
+            cracks.grow(TIP, &[Point::new(2.4 + 0.02 * (tip.y - 1.2) / 1.7, tip.y)]);
+            cracks.set_end(TIP, CrackEnd::Junction { crack: 1 });
+        } else {
+            break;
+        }
+        total.recut(&cracks, &[TIP]);
+        for (faces, crack) in total.probes.faces.iter().zip(cracks.iter()) {
+            for (face, side) in faces.iter().zip([Side::Above, Side::Below]) {
+                for (point, probe) in face.iter().enumerate() {
+                    assert_eq!(*probe, total.lattice.face_probe(crack, point, side), "{k}: {point} {side:?}");
+                }
+            }
+        }
+        let stays = |(now, was): (&Probe, &Probe)| now == was && now.is_local;
+        kept += total.probes.faces[0][0].iter().zip(&before[0][0]).filter(|&pair| stays(pair)).count();
+    }
+    assert!(kept > 100, "{kept}");
 }
 
 /// Truth: the faces meet where they meet. Halves that are thrown against each other press, at no node do they overlap

@@ -5,7 +5,7 @@ use super::points::Motion;
 use super::tracer::SIDES;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::solver::Observed;
-use crate::tip::frame::{line_around, side_of, tip_of, turn};
+use crate::tip::frame::{LineAround, tip_of, turn};
 use crate::tip::zone::{FaceContact, FaceLoad, QuadraturePoint, TipZone};
 use fissure_scene::{End, Matrix, Point, Vector};
 
@@ -63,7 +63,7 @@ struct TipAxes {
     /// From the world into the frame of the tip.
     frame: Matrix,
     /// The crack around the tip as it is now [m].
-    line: Vec<Point>,
+    line: LineAround,
 }
 
 impl Updated {
@@ -73,7 +73,7 @@ impl Updated {
         let (tip, ahead) = self.tip_now(cracks, id);
         let tip_at_rest = cracks.position(id);
         let frame = Matrix::new(ahead.x, ahead.y, -ahead.y, ahead.x);
-        let line = line_around(cracks, id, radius, |crack, point| self.faces.cracks[crack].position[point]);
+        let line = LineAround::new(cracks, id, radius, |crack, point| self.faces.cracks[crack].position[point]);
         let axes = TipAxes { id, tip, tip_at_rest, ahead, frame, line };
         let mut found: Vec<(usize, Matrix)> = Vec::new();
         let mut mean = Matrix::zeros();
@@ -126,7 +126,7 @@ impl Updated {
             place: frame * (point.position - axes.tip),
             displacement: frame
                 * (point.position - axes.tip - turned.0 * (particles.rest[particle] - axes.tip_at_rest)),
-            side: side_of(&axes.line, axes.id.end, axes.ahead, point.position),
+            side: axes.line.side_of(axes.ahead, point.position),
             volume: particles.volume[particle] * ratio,
             stress: into(crate::kirchhoff_stress(elastic, mu, lambda) / ratio),
             gradient: into(gradient),
