@@ -2,7 +2,7 @@
 
 use crate::bevel::BevelSize;
 use crate::body_names::body_names;
-use crate::boolean::{Edge, Shape, material, twice_area};
+use crate::boolean::{Edge, Shape, SourceIndex, common, material, twice_area};
 use crate::closed::shifts as closed;
 use crate::edges::MovedLines;
 use crate::error::PostError;
@@ -29,7 +29,7 @@ use crate::source::{Carried, SourceEdge};
 use crate::thinned::{kept_points, picked, thinned};
 use crate::triangulate::{Cap, Division, triangulate};
 use crate::widening::{Shift, Widening, widened};
-use fissure_scene::{Attribute, CrackFrame, Cut, Fragments, Frame, Region, Scene, Vector, Walls};
+use fissure_scene::{Attribute, CrackFrame, Cut, Fragments, Frame, OpeningSettings, Region, Scene, Vector, Walls};
 use std::collections::BTreeMap;
 
 /// Overlaps of fragments that are at most so wide in the mean are inaccuracies of contact, in cells: faces that press
@@ -78,14 +78,25 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
     let relief = options
         .roughness
         .map(|roughness| Relief::new(roughness, options.thickness, moved, &cracks.cracks, &cracks.offsets));
+    // Faces that only move into the material leave no fragment beyond itself.
+    let takes_off = |settings: &OpeningSettings| settings.factor.value(frame.time) >= 1.0;
+    let own_lines = options.opening.as_ref().filter(|settings| takes_off(settings)).map(|_| {
+        let still = shifts.iter().map(|of_crack| vec![Shift::default(); of_crack.len()]).collect();
+        MovedLines::new(scene, moved, &cracks, still).with(histories.clone())
+    });
     let lines = MovedLines::new(scene, moved, &cracks, shifts).with(histories);
     let mut objects = BTreeMap::<ObjectKey, Vec<Vec<Vec<SourceEdge>>>>::new();
+    let mut own = Boundaries::new();
     for (fragment, number) in fragments.list().iter().zip(numbers) {
-        let grid = grids[fragment.body as usize];
+        let (grid, object) = (grids[fragment.body as usize], (fragment.body, number));
         let boundaries = fragment.boundaries.iter().map(|boundary| lines.edges(boundary, grid)).collect();
-        objects.entry((fragment.body, number)).or_default().push(boundaries);
+        objects.entry(object).or_default().push(boundaries);
+        if let Some(lines) = &own_lines {
+            let edges = fragment.boundaries.iter().flat_map(|boundary| lines.edges(boundary, grid));
+            own.entry(object).or_default().extend(edges);
+        }
     }
-    let solids = Solids { relief: relief.as_ref(), ..Solids::new(scene, frame, options, &grids) };
+    let solids = Solids { relief: relief.as_ref(), own, ..Solids::new(scene, frame, options, &grids) };
     let mut meshes = BTreeMap::new();
     let mut opened = Boundaries::new();
     for ((body, piece), fragments) in objects {
@@ -176,6 +187,8 @@ struct Solids<'a> {
     names: Vec<String>,
     /// How rough the walls of cracks are.
     relief: Option<&'a Relief>,
+    /// The boundaries of fragments that are to end within them, as cracks are; of others none.
+    own: Boundaries,
     /// What of the history of crack walls is known and asked for.
     attributes: Vec<Attribute>,
     check: fn(&Mesh) -> Result<(), MeshDefect>,
@@ -186,7 +199,18 @@ impl<'a> Solids<'a> {
         let interior = |body| Interior::new(frame, body, scene.particle_spacing, options.cut);
         let interiors = (0..scene.bodies.len() as u32).map(interior).collect();
         let (names, attributes) = (body_names(scene), attributes(frame, options));
-        Self { scene, frame, options, grids, interiors, names, relief: None, attributes, check: Mesh::check }
+        Self {
+            scene,
+            frame,
+            options,
+            grids,
+            interiors,
+            names,
+            relief: None,
+            own: Boundaries::new(),
+            attributes,
+            check: Mesh::check,
+        }
     }
 
     /// Extrudes what the boundaries of fragments enclose as they are now; nothing where that is no more than rounding.
@@ -243,12 +267,21 @@ impl<'a> Solids<'a> {
     fn enclosed(
         &self,
         (body, piece): ObjectKey,
-        sources: Vec<SourceEdge>,
+        mut sources: Vec<SourceEdge>,
         shortest: f64,
     ) -> Result<Enclosed, PostError> {
         let grid = self.grids[body as usize];
         let least = shortest * size(self.scene, body) / grid.step;
-        let shapes = without_slivers(material(&sources));
+        let mut shapes = material(&sources);
+        if let Some(own) = self.own.get(&(body, piece)) {
+            // A crumb whose faces all move by more than its size would be turned inside out twice, and grow.
+            let first = sources.len() as u32;
+            let later = |edge: &Edge| Edge { source: SourceIndex(first + edge.source.0), ..*edge };
+            let plain = material(own);
+            shapes = common(shapes.iter().flatten().flatten().copied(), plain.iter().flatten().flatten().map(later));
+            sources.extend(own);
+        }
+        let shapes = without_slivers(shapes);
         let mut enclosed = Enclosed { body, piece, grid, shapes, sources, least, has_lost: false };
         self.tidy(&mut enclosed, Growth::Allowed)?;
         Ok(enclosed)

@@ -630,6 +630,46 @@ fn widened(scene: &Scene, factor: f64, least: f64, falloff: f64) -> PostOptions 
     PostOptions { opening: Some(OpeningSettings { factor, least, falloff }), shortest_edge: 0.0, ..options(scene) }
 }
 
+/// Truth: a part is not more than the whole. Four cracks cut out a crumb; shown wider than it is, so that its faces
+/// pass each other, they leave no more of it than there is.
+#[test]
+fn crumbs_between_wide_cracks_do_not_grow() {
+    let region = square(20.0);
+    let scene = scene(region.clone());
+    let places = [0.0, 3.0, 6.0, 9.0, 10.0, 11.0, 14.0, 17.0, 20.0];
+    let across = |y: f64| places.iter().map(|&x| Point::new(x, y)).collect::<Vec<_>>();
+    let up = |x: f64| [9.0, 10.0, 11.0].map(|y| Point::new(x, y)).to_vec();
+    let lines = [across(9.0), across(11.0), up(9.0), up(11.0)];
+    let ends = [CrackEnd::Mouth, CrackEnd::Mouth];
+    let junctions = [CrackEnd::Junction { crack: 0 }, CrackEnd::Junction { crack: 1 }];
+    let opened = |(rest, [start, end]): (Vec<Point>, [CrackEnd; 2])| {
+        let opening = vec![0.2; rest.len()];
+        Opened::symmetric(rest, &opening, start, end)
+    };
+    let cracks: Vec<Opened> = lines.into_iter().zip([ends, ends, junctions, junctions]).map(opened).collect();
+    let mut frame = frame(&region, 5, &cracks);
+    let piece = |x: Point| {
+        let column = if x.x < 9.0 { 0 } else { 1 + u32::from(x.x > 11.0) };
+        if x.y < 9.0 {
+            3
+        } else if x.y > 11.0 {
+            4
+        } else {
+            column
+        }
+    };
+    frame.particles.piece = frame.particles.rest.iter().map(|&x| piece(x)).collect();
+    let of_crumb = |factor: f64| {
+        let made = post_frame(&scene, &frame, &widened(&scene, factor, 0.0, 1.0)).unwrap().parts.remove(0).1;
+        made.into_iter().filter(|mesh| mesh.piece == 1).map(|mesh| area(std::slice::from_ref(&mesh))).sum::<f64>()
+    };
+    let plain = of_crumb(1.0);
+    for factor in [2.0, 6.0, 30.0] {
+        let shown = of_crumb(factor);
+        assert!(plain > 3.0 && shown <= plain * (1.0 + 1e-9), "{shown} of {plain} with {factor}");
+    }
+}
+
 /// Truth: the area of the widths that the settings ask for, along a straight crack from an edge.
 #[test]
 fn a_widened_crack_takes_the_area_that_was_asked_for() {
