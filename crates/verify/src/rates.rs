@@ -26,7 +26,7 @@ enum Cracks {
     None,
     /// One from the edge, a fifth of the plate long.
     Edge,
-    /// So many of four cells, in rows of ten.
+    /// So many of four cells: ten, each in a row of its own, or rows of ten.
     Flaws(u16),
 }
 
@@ -68,6 +68,9 @@ const STRESS: f64 = 1e5;
 const WEAK: f64 = 1e4;
 const UNBREAKABLE: f64 = 1e12;
 
+/// Rows of flaws, and places in a row.
+const ROWS: u16 = 10;
+
 /// Steps that are timed, at least.
 const LEAST_STEPS: u64 = 40;
 /// Steps before the clock starts, per cell along a side: waves take some two steps for a cell.
@@ -90,15 +93,16 @@ impl TimedPlate {
             Cracks::None => {}
             Cracks::Edge => problem = problem.crack(&[(0.0, 0.503), (0.2, 0.503)], [false, true]),
             Cracks::Flaws(count) => {
-                let (columns, rows) = (count.min(10), count.div_ceil(10));
                 // Four cells of crack, and as many between two.
-                if cells < 8 * columns.max(rows) {
+                if cells < 8 * ROWS {
                     return None;
                 }
+                // Side by side in one row they would have run into each other before the clock starts.
+                let place = |k: u16| if count > ROWS { (k % ROWS, k / ROWS) } else { (3 * k % ROWS, k) };
                 for k in 0..count {
-                    let (column, row) = (f64::from(k % columns), f64::from(k / columns));
-                    let x = (column + 0.5) / f64::from(columns);
-                    let y = (row + 0.5) / f64::from(rows) + 0.013 * f64::from(k % 3);
+                    let (column, row) = place(k);
+                    let x = (f64::from(column) + 0.5) / f64::from(ROWS);
+                    let y = (f64::from(row) + 0.5) / f64::from(ROWS) + 0.013 * f64::from(k % 3);
                     problem = problem.crack(&[(x - 2.0 * h, y), (x + 2.0 * h, y + 0.3 * h)], [true, true]);
                 }
             }
