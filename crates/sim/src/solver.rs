@@ -80,8 +80,9 @@ pub(crate) trait Snapshot {
     /// Costs an evaluation of all forces.
     fn energy_of_lag(&self) -> f64;
 
-    /// Work that came in over half of the last step [J/m], where energies belong to moments half a step apart and
-    /// [`Solver::energy_of_lag`] does not know by how much they differ.
+    /// Energy that a sound body may have beyond the work that is counted [J/m]: what came in over half of the last
+    /// step, where energies belong to moments half a step apart and [`Solver::energy_of_lag`] does not know by how
+    /// much they differ; what obstacles have given to waves of the lattice that bounced against them.
     fn work_in_doubt(&self) -> f64;
 
     /// Kinetic energy [J/m]; cheap, unlike the other energies.

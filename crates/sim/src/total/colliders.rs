@@ -83,6 +83,17 @@ pub(super) struct Colliders {
     surface: Vec<SurfaceNode>,
 }
 
+/// What obstacles do in a step [J/m].
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct CollisionWork {
+    /// By how they move.
+    pub(super) of_motion: f64,
+    /// What their impulses do to what the leapfrog keeps beyond that: they work on the mean of the velocities before
+    /// and after a kick. Below zero where material runs into an obstacle and is stopped; above where it was about to
+    /// leave and waves of the lattice throw it back within a step.
+    pub(super) beyond: f64,
+}
+
 impl Colliders {
     /// The obstacles of `scene`, and the fields whose node is not surrounded by material of their own.
     pub(super) fn new(scene: &Scene, lattice: &Lattice) -> Self {
@@ -123,10 +134,11 @@ impl Colliders {
         self.surface.sort_unstable_by_key(|s| s.field);
     }
 
-    /// Keeps the surface out of the obstacles where they are at the time `time` [s]. Adds the work of a step to `work`
-    /// [J/m].
-    pub(super) fn apply(&self, time: f64, lattice: &Lattice, motion: &mut Motion, work: &mut f64) {
+    /// Keeps the surface out of the obstacles where they are at the time `time` [s]. `gain`:
+    /// [`super::motion::force_of_impulse`].
+    pub(super) fn apply(&self, time: f64, gain: f64, lattice: &Lattice, motion: &mut Motion) -> CollisionWork {
         let mass = lattice.mass();
+        let mut work = CollisionWork::default();
         for obstacle in &self.obstacles {
             let placed = obstacle.at(time);
             for node in &self.surface {
@@ -157,11 +169,15 @@ impl Colliders {
                     placed.resolve(before, skin)
                 };
                 let impulse = (after - before) * mass[d];
-                *work += impulse.dot(&placed.velocity(place));
+                let before_kick = Vector::new(motion.before_kick()[0][d], motion.before_kick()[1][d]);
+                let of_motion = impulse.dot(&placed.velocity(place));
+                work.of_motion += of_motion;
+                work.beyond += 0.5 * gain * impulse.dot(&(before_kick + after)) - of_motion;
                 motion.velocity[0][d] = after.x;
                 motion.velocity[1][d] = after.y;
             }
         }
+        work
     }
 }
 

@@ -86,6 +86,8 @@ pub(crate) struct Total {
     touching: Touching,
     /// Work done by loads, supports and colliders so far, to the moment of the velocities [J/m].
     external_work: f64,
+    /// Work of colliders beyond that of their motion so far: see [`colliders::CollisionWork::beyond`] [J/m].
+    collision_work: f64,
     /// Power of loads in the last step, and of gravity, with the velocities after it [W/m].
     power_of_loads: f64,
     power_of_gravity: f64,
@@ -100,8 +102,8 @@ pub(crate) struct Total {
 /// What of a solver cannot be laid anew from the scene and the cracks; last the work and the reactions so far.
 type Saved = (Layout, Motion, Probes, Ties, (LastImpulses, FaceForces), Done);
 
-/// The work done so far, the power of loads and that of gravity, and what each support has done.
-type Done = ([f64; 3], Vec<Reaction>);
+/// The work done so far, the power of loads and of gravity, the work of collisions; what each support has done.
+type Done = ([f64; 4], Vec<Reaction>);
 
 /// Steps between two checks that everything is still finite and in range.
 const STEPS_BETWEEN_CHECKS: u32 = 8;
@@ -121,7 +123,7 @@ impl Total {
         let motion = Motion::initial(scene, &lattice);
         let ties = Ties::new(&lattice, &motion, cracks);
         let falling = motion.power_of_gravity(lattice.mass(), scene.gravity);
-        let done = ([0.0, 0.0, falling], vec![Reaction::default(); scene.supports.len()]);
+        let done = ([0.0, 0.0, falling, 0.0], vec![Reaction::default(); scene.supports.len()]);
         Self::of_parts(scene, lattice, (motion, probes, ties, LastImpulses::default(), done), cracks)
     }
 
@@ -181,6 +183,7 @@ impl Total {
             external_work: done.0[0],
             power_of_loads: done.0[1],
             power_of_gravity: done.0[2],
+            collision_work: done.0[3],
             reactions: done.1,
             stiffening,
             steps_since_check: 0,
@@ -220,9 +223,10 @@ impl Total {
     /// Supports, then colliders, at the time `middle` [s] of a step, after a kick of `kick` [s].
     fn apply_boundaries(&mut self, middle: f64, time_step: f64, kick: f64) {
         self.apply_supports(middle, time_step, kick);
-        let mut work = 0.0;
-        self.colliders.apply(middle, &self.lattice, &mut self.motion, &mut work);
-        self.external_work += work;
+        let gain = motion::force_of_impulse(self.damping, kick);
+        let work = self.colliders.apply(middle, gain, &self.lattice, &mut self.motion);
+        self.external_work += work.of_motion;
+        self.collision_work += work.beyond;
     }
 
     /// What loads do from the moment of the velocities to that of the displacements [J/m].
@@ -409,7 +413,7 @@ impl Snapshot for Total {
     }
 
     fn work_in_doubt(&self) -> f64 {
-        0.0
+        self.collision_work.max(0.0)
     }
 
     fn energy_of_lag(&self) -> f64 {
@@ -445,7 +449,7 @@ impl Snapshot for Total {
             &self.probes,
             &self.ties,
             (self.touching.last(), self.contacts.all_forces()),
-            ([self.external_work, self.power_of_loads, self.power_of_gravity], &self.reactions),
+            ([self.external_work, self.power_of_loads, self.power_of_gravity, self.collision_work], &self.reactions),
         );
         saved::to_bytes(&saved)
     }
