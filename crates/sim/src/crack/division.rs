@@ -486,23 +486,36 @@ impl Division {
         if bucket.iter().all(|s| s.is_apart(particle, node)) {
             return shares;
         }
-        // Continuations beyond a junction need to know what else is crossed, so they come in a second round.
-        let mut crossed_whole: Vec<u32> = Vec::new();
-        let rounds = if self.has_junctions { 2 } else { 1 };
-        for round in 0..rounds {
-            let mut rest = bucket;
-            while let Some(&Listed { line: line_index, .. }) = rest.first() {
-                let (segments, others) = rest.split_at(rest.iter().take_while(|s| s.line == line_index).count());
-                rest = others;
-                let line = &self.lines[line_index as usize];
-                if (round == 1) != line.has_junction {
-                    continue;
+        let cuts = |crossed: &[u32], asks: &dyn Fn(&Line) -> bool| -> SmallVec<[(u32, Option<PairCut>); 8]> {
+            let of_lines = bucket.chunk_by(|s, t| s.line == t.line);
+            let of_line = |segments: &[Listed]| {
+                let line = &self.lines[segments[0].line as usize];
+                let cut = asks(line)
+                    .then(|| divide(line, segments, particle, node, self.cell_size, domain, crossed))
+                    .flatten();
+                (segments[0].line, cut)
+            };
+            of_lines.map(of_line).collect()
+        };
+        let mut found = cuts(&[], &|_| true);
+        // A continuation beyond a junction counts where the pair crosses the other crack itself, whatever the numbers
+        // of both are.
+        if self.has_junctions {
+            let crack = |line: u32| self.lines[line as usize].crack;
+            let crossed: SmallVec<[u32; 8]> =
+                found.iter().filter(|(_, cut)| cut.is_some()).map(|&(line, _)| crack(line)).collect();
+            if !crossed.is_empty() {
+                let again = cuts(&crossed, &|line| line.has_junction);
+                for (first, again) in found.iter_mut().zip(again) {
+                    if self.lines[first.0 as usize].has_junction {
+                        *first = again;
+                    }
                 }
-                let Some(cut) = divide(line, segments, particle, node, self.cell_size, domain, &crossed_whole) else {
-                    continue;
-                };
-                crossed_whole.push(line.crack);
-                shares = split(shares, line.crack, cut);
+            }
+        }
+        for (line, cut) in found {
+            if let Some(cut) = cut {
+                shares = split(shares, self.lines[line as usize].crack, cut);
             }
         }
         shares
@@ -780,6 +793,47 @@ mod tests {
                 let fresh = division(&lines, TipDivision::PartlyCut, cut);
                 prop_assert_eq!(&changed.lines, &fresh.lines);
                 prop_assert_eq!(&changed.buckets, &fresh.buckets);
+            }
+        }
+
+        /// Truth: the same cracks under other numbers. Which of two cracks that end on others, or on each other, comes
+        /// first says nothing of what they part.
+        #[test]
+        fn the_numbers_of_cracks_do_not_matter(
+            lines in any_lines(prop_oneof![
+                Just(LineEnd::Tip), Just(LineEnd::Open(1.0)),
+                (0_u32..3).prop_map(|crack| LineEnd::Junction { crack, beyond: 1.0 }),
+            ]),
+            cut in any_cut(), pairs in prop::collection::vec(any_pair(), 60),
+        ) {
+            let last = lines.len() as u32 - 1;
+            let turned = |crack: u32| last.saturating_sub(crack);
+            let end = |end: LineEnd| match end {
+                LineEnd::Junction { crack, beyond } if crack <= last => LineEnd::Junction { crack: turned(crack), beyond },
+                other => other,
+            };
+            // Close together, so that pairs cross several.
+            let near = |p: Point| Point::from(p.coords * 0.2);
+            let mut lines = lines;
+            lines.iter_mut().flat_map(|line| &mut line.points).for_each(|p| *p = near(*p));
+            let mut others: Vec<CrackLine> = lines.clone();
+            for line in &mut others {
+                (line.crack, line.start, line.end) = (turned(line.crack), end(line.start), end(line.end));
+            }
+            others.reverse();
+            let [first, second] = [&lines, &others].map(|lines| division(lines, TipDivision::PartlyCut, cut));
+            for (particle, node) in pairs {
+                let node = near(particle) + (node - particle);
+                let particle = near(particle);
+                let shares = first.pair(particle, node);
+                let of_others = second.pair(particle, node);
+                prop_assert_eq!(shares.len(), of_others.len());
+                for share in shares {
+                    let mut crossed: CrossedSet = share.crossed.iter().map(|&(k, side)| (turned(k), side)).collect();
+                    crossed.sort_unstable();
+                    let same = of_others.iter().find(|other| other.crossed == crossed);
+                    prop_assert!(same.is_some_and(|same| (same.fraction - share.fraction).abs() < 1e-12), "{crossed:?}");
+                }
             }
         }
 
