@@ -474,6 +474,12 @@ impl Division {
         Around { division: self, particle, segments: bucket.filter(|s| !s.is_apart(low, high)).copied().collect() }
     }
 
+    /// Whether any of `segments` is the continuation of a crack beyond the one that it ends on.
+    fn has_continuation(&self, segments: &[Listed]) -> bool {
+        let kind = |s: &Listed| self.lines[s.line as usize].kinds[s.segment as usize];
+        segments.iter().any(|s| matches!(kind(s), SegmentKind::BeyondJunction(_)))
+    }
+
     fn shares(&self, particle: Point, node: Point, domain: f64) -> Shares {
         self.shares_across(self.bucket(particle), particle, node, domain)
     }
@@ -486,30 +492,21 @@ impl Division {
         if bucket.iter().all(|s| s.is_apart(particle, node)) {
             return shares;
         }
-        let cuts = |crossed: &[u32], asks: &dyn Fn(&Line) -> bool| -> SmallVec<[(u32, Option<PairCut>); 8]> {
-            let of_lines = bucket.chunk_by(|s, t| s.line == t.line);
-            let of_line = |segments: &[Listed]| {
-                let line = &self.lines[segments[0].line as usize];
-                let cut = asks(line)
-                    .then(|| divide(line, segments, particle, node, self.cell_size, domain, crossed))
-                    .flatten();
-                (segments[0].line, cut)
-            };
-            of_lines.map(of_line).collect()
+        let cut = |segments: &[Listed], crossed: &[u32]| {
+            let line = &self.lines[segments[0].line as usize];
+            divide(line, segments, particle, node, self.cell_size, domain, crossed)
         };
-        let mut found = cuts(&[], &|_| true);
+        let of_lines = || bucket.chunk_by(|s, t| s.line == t.line);
+        let mut found: SmallVec<[(u32, Option<PairCut>); 8]> =
+            of_lines().map(|segments| (segments[0].line, cut(segments, &[]))).collect();
         // A continuation beyond a junction counts where the pair crosses the other crack itself, whatever the numbers
         // of both are.
         if self.has_junctions {
-            let crack = |line: u32| self.lines[line as usize].crack;
             let crossed: SmallVec<[u32; 8]> =
-                found.iter().filter(|(_, cut)| cut.is_some()).map(|&(line, _)| crack(line)).collect();
-            if !crossed.is_empty() {
-                let again = cuts(&crossed, &|line| line.has_junction);
-                for (first, again) in found.iter_mut().zip(again) {
-                    if self.lines[first.0 as usize].has_junction {
-                        *first = again;
-                    }
+                found.iter().filter(|of| of.1.is_some()).map(|of| self.lines[of.0 as usize].crack).collect();
+            for (of, segments) in found.iter_mut().zip(of_lines()) {
+                if !crossed.is_empty() && self.has_continuation(segments) {
+                    of.1 = cut(segments, &crossed);
                 }
             }
         }
@@ -539,8 +536,7 @@ impl Around<'_> {
 
     /// Whether any of it is the continuation of a crack beyond the one that it ends on.
     pub(crate) fn is_beyond_junction(&self) -> bool {
-        let kind = |s: &Listed| self.division.lines[s.line as usize].kinds[s.segment as usize];
-        self.segments.iter().any(|s| matches!(kind(s), SegmentKind::BeyondJunction(_)))
+        self.division.has_continuation(&self.segments)
     }
 }
 
