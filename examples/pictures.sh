@@ -9,7 +9,7 @@ shots() {
     case "$1" in
         pull | pull-rotated | pull-guided) echo "8,16,48" ;;
         drop-*) echo "24,28,45" ;;
-        logo) echo "1,24,48" ;;
+        logo) echo "1,4,48" ;;
         wall-bolt) echo "12,18,48" ;;
         three-holes) echo "20,48" ;;
         two-materials) echo "14,48" ;;

@@ -2,7 +2,7 @@
 //! each says is to be seen.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use fissure_scene::{CrackEnd, Frame, Point, Scene, TipState};
+use fissure_scene::{CrackEnd, Frame, Point, Scene, TipState, Vector};
 use fissure_sim::Simulation;
 use fissure_tests::{distance, example, last_frame};
 use std::collections::BTreeMap;
@@ -74,6 +74,20 @@ fn letters_crack_along_their_guides() {
         assert!(worst <= 0.5 * scene.cell_size, "{}: a point lies {worst} m off its guide", drawn.name);
         assert_eq!([crack.start, crack.end], [CrackEnd::Mouth; 2], "{}", drawn.name);
     }
+    // They have come down at 4 m/s, in pieces that topple at up to 1.5 m/s, and lie at the end of the shot.
+    let mut moving = BTreeMap::<u32, (usize, Vector)>::new();
+    let particles = &frame.particles;
+    for (piece, velocity) in particles.piece.iter().zip(&particles.velocity) {
+        let (count, sum) = moving.entry(*piece).or_default();
+        (*count, *sum) = (*count + 1, *sum + velocity);
+    }
+    assert_eq!(moving.len(), 6, "two pieces of each letter");
+    for (piece, (count, sum)) in moving {
+        let speed = sum.norm() / count as f64;
+        assert!(speed < 0.25, "piece {piece} goes at {speed} m/s");
+    }
+    let lowest = particles.position.iter().fold(f64::INFINITY, |least, p| least.min(p.y));
+    assert!((lowest + 0.05).abs() < scene.cell_size, "the floor lies at -0.05 m, the lowest particle at {lowest} m");
 }
 
 #[test]
