@@ -69,7 +69,7 @@ impl Simulation {
         self.elastic.get(body.material_at(cracks.position(id)))
     }
 
-    /// Energy budget now, as in a frame.
+    /// Energy budget now, with the kinetic energy of half a step before in the total formulation.
     pub fn energies(&self) -> Energies {
         let energies = self.solver.energies();
         Energies {
@@ -87,8 +87,8 @@ impl Simulation {
         energies.kinetic + energies.strain + self.solver.energy_of_lag()
     }
 
-    /// Energy budget now, with the kinetic energy of the same moment as the strain energy. Costs an evaluation of all
-    /// forces.
+    /// Energy budget now, as in a frame, with the kinetic energy of the same moment as the strain energy. Costs an
+    /// evaluation of all forces.
     pub fn energies_of_one_moment(&self) -> Energies {
         let energies = self.energies();
         Energies { kinetic: energies.kinetic + self.solver.energy_of_lag(), ..energies }
@@ -120,7 +120,7 @@ impl Simulation {
             outlines: self.solver.outline_frames(),
             cracks: self.solver.crack_frames(&self.state.cracks),
             tips: self.tips(),
-            energies: self.energies(),
+            energies: self.energies_of_one_moment(),
             colliders: self.collider_poses(),
             supports: self.support_records(),
         }

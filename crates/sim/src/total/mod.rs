@@ -65,7 +65,6 @@ use probes::Probes;
 use std::sync::{Arc, OnceLock};
 use stiffening::Stiffening;
 use supports::{HeldStep, Supports};
-use tie::TieUnits;
 use ties::Ties;
 use touching::{LastImpulses, Moment, Touching};
 
@@ -336,8 +335,7 @@ impl Solver for Total {
         self.step_at_rest = OnceLock::new();
         let points_before = self.probes.points_of_cracks();
         let mut boxes = self.lattice.set_cracks(cracks);
-        let units = TieUnits::of(&self.lattice);
-        let held = self.ties.held(&self.motion, units);
+        let held = self.ties.held(&self.motion);
         let divides = changed.iter().any(|id| id.crack >= points_before.len());
         let mut lost = self.lattice.recut(&boxes, divides, &mut self.motion);
         if changed.iter().any(|&id| cracks.end(id) != CrackEnd::Tip) {
@@ -354,7 +352,7 @@ impl Solver for Total {
         self.contacts.refresh(&near, &self.lattice, cracks);
         self.ties.refresh(&near, &self.lattice, &self.motion, cracks);
         self.touching.change(&near, has_mouthed);
-        held - self.ties.held(&self.motion, units) + lost
+        held - self.ties.held(&self.motion) + lost
     }
 
     fn begin_run(&mut self) {

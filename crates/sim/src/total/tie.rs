@@ -18,12 +18,12 @@
 //! waves has more than its way costs: the drag then turns round and drives the faces apart.
 //!
 //! **Inertia.** A stiff spring between two light fields would ask for a short time step. A tie of stiffness k therefore
-//! carries the kinetic energy ½ m |δ̇|² with m ≥ k/ω², ω the highest frequency of a plane wave on the uncut lattice. It
-//! acts on the difference of the two fields alone, so momentum, gravity and rigid motion do not see it, and by
-//! Rayleigh's quotient (K + k)/(M + m) ≤ max(K/M, k/m) no mode is faster than one of the lattice without ties.
+//! carries the kinetic energy ½ m |δ̇|² with m ≥ k/ω², ω the highest frequency of a plane wave in an uncut lattice of
+//! the material around it. It acts on the difference of the two fields alone, so momentum, gravity and rigid motion do
+//! not see it, and by Rayleigh's quotient (K + k)/(M + m) ≤ max(K/M, k/m) no mode is faster than one of the lattice
+//! without ties.
 
 use super::field_vectors::{FieldVectors, at};
-use super::lattice::Lattice;
 use super::motion::Motion;
 use crate::saved::{self, Fits};
 use fissure_plane::{Point, Vector};
@@ -41,6 +41,8 @@ pub(super) struct Tie {
     place: Point,
     /// What stiffness and drag are measured by [Pa], per unit thickness.
     pub(super) scale: f64,
+    /// Time that the fastest wave in the material of the two takes for a cell [s].
+    pub(super) crossing: f64,
     /// Opening without force [m].
     rest: Vector,
     /// Force per opening [Pa], per unit thickness.
@@ -112,36 +114,16 @@ pub(super) fn is_tied(ahead: f64, split_ahead: f64) -> bool {
     ahead > BEGINS - LENGTH && ahead <= split_ahead
 }
 
-/// What all ties of one body of material have in common.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct TieUnits {
-    /// Distance between nodes [m].
-    pub(super) cell_size: f64,
-    /// Time a wave takes for a cell [s].
-    crossing: f64,
-}
-
-impl TieUnits {
-    /// Those of `lattice`.
-    pub(super) fn of(lattice: &Lattice) -> Self {
-        Self { cell_size: lattice.grid.cell_size, crossing: lattice.crossing_time() }
-    }
-
-    /// Inertia of a tie over its stiffness [s²].
-    pub(super) fn inertia_per_stiffness(self) -> f64 {
-        (INERTIA * self.crossing).powi(2)
-    }
-}
-
 impl Tie {
     /// A tie of the fields `fields` of the node number `node` at `place`, for a tip `ahead` cells before it; their
-    /// stiffness is `stiffness` [Pa]. It holds with no force where they are without displacement.
+    /// stiffness is `stiffness` [Pa], and a wave in them takes the time `crossing` [s] for a cell. It holds with no
+    /// force where they are without displacement.
     pub(super) fn new(
         fields: [u32; 2],
         (node, place): (u32, Point),
         stiffness: [f64; 2],
+        crossing: f64,
         ahead: f64,
-        units: TieUnits,
     ) -> Self {
         let [s1, s2] = stiffness;
         let mut tie = Self {
@@ -150,13 +132,14 @@ impl Tie {
             node,
             place,
             scale: s1 * s2 / s1.hypot(s2),
+            crossing,
             rest: Vector::zeros(),
             stiffness: 0.0,
             inertia: 0.0,
             drag: 0.0,
             dragged: 0.0,
         };
-        tie.soften(ahead, units);
+        tie.soften(ahead);
         tie
     }
 
@@ -167,7 +150,7 @@ impl Tie {
     pub(super) fn check(&self, fields: usize, nodes: usize) -> Fits {
         saved::below("a tie", [self.first, self.second], fields)?;
         saved::below("a tie", [self.node], nodes)?;
-        let numbers = [&self.scale, &self.stiffness, &self.inertia, &self.drag, &self.dragged];
+        let numbers = [&self.scale, &self.crossing, &self.stiffness, &self.inertia, &self.drag, &self.dragged];
         saved::finite("a tie", numbers.into_iter().chain(self.place.iter()).chain(self.rest.iter()))
     }
 
@@ -182,11 +165,16 @@ impl Tie {
     }
 
     /// Softens the tie to where it is when the tip is `ahead` cells from its node.
-    pub(super) fn soften(&mut self, ahead: f64, units: TieUnits) {
+    pub(super) fn soften(&mut self, ahead: f64) {
         let released = released_part(ahead);
         self.stiffness = self.scale * softness(released);
-        self.inertia = self.stiffness * units.inertia_per_stiffness();
-        self.drag = DRAG * (1.0 - released) * self.scale * units.crossing;
+        self.inertia = self.stiffness * self.inertia_per_stiffness();
+        self.drag = DRAG * (1.0 - released) * self.scale * self.crossing;
+    }
+
+    /// Inertia over stiffness [s²].
+    fn inertia_per_stiffness(&self) -> f64 {
+        (INERTIA * self.crossing).powi(2)
     }
 
     pub(super) fn opening(&self, u: &FieldVectors) -> Vector {
@@ -210,11 +198,11 @@ impl Tie {
 
     /// Twice what a tie holds of what the leapfrog keeps, over its stiffness [m²]: u(t − Δt) · u(t) of the stretch and
     /// the part of the inertia.
-    pub(super) fn held_per_stiffness(&self, motion: &Motion, units: TieUnits) -> f64 {
+    pub(super) fn held_per_stiffness(&self, motion: &Motion) -> f64 {
         let now = self.stretch(&motion.displacement);
         let rate = self.opening(&motion.velocity);
         let before = now - rate * motion.last_step;
-        now.dot(&before) + units.inertia_per_stiffness() * rate.norm_squared()
+        now.dot(&before) + self.inertia_per_stiffness() * rate.norm_squared()
     }
 
     /// Whether its fields lie on each other, as those of a node that has just been split do. What has come apart is not

@@ -4,7 +4,7 @@ use super::field_vectors::FieldVectors;
 use super::lattice::Lattice;
 use super::motion::Motion;
 use super::near::Near;
-use super::tie::{self, Tie, TieUnits};
+use super::tie::{self, Tie};
 use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::division::WINDOW;
 use crate::crack::tip::Tip;
@@ -149,12 +149,12 @@ impl Ties {
 
     /// Softens the ties of a tip to where it is now.
     pub(super) fn soften(&mut self, lattice: &Lattice, cracks: &Cracks, id: TipId) {
-        let units = TieUnits::of(lattice);
+        let cell_size = lattice.grid.cell_size;
         let (tip, direction) = (cracks.position(id), cracks.last_direction(id));
         let Some(ties) = self.of_tip.get_mut(&id) else { return };
         let mut nodes: Vec<u32> = Vec::with_capacity(ties.len());
         for tie in ties {
-            tie.soften(tie.ahead_of(tip, direction, units.cell_size), units);
+            tie.soften(tie.ahead_of(tip, direction, cell_size));
             nodes.push(tie.node);
         }
         nodes.dedup();
@@ -171,14 +171,13 @@ impl Ties {
     /// the kick changes. A stiffness that changes by ΔK at t and an inertia that changes by ΔM with it change this by
     /// ½ u(t − Δt) · ΔK u(t) + ½ v(t − Δt/2) · ΔM v(t − Δt/2).
     pub(super) fn release(&self, lattice: &Lattice, motion: &Motion, cracks: &Cracks, id: TipId) -> Release {
-        let units = TieUnits::of(lattice);
-        let h = units.cell_size;
+        let h = lattice.grid.cell_size;
         let (tip, direction) = (cracks.position(id), cracks.last_direction(id));
         let ties = self.of_tip.get(&id).map_or(&[][..], Vec::as_slice);
         let springs: Vec<(f64, f64, f64)> = ties
             .iter()
             .map(|tie| {
-                let held = 0.5 * tie.scale * tie.held_per_stiffness(motion, units);
+                let held = 0.5 * tie.scale * tie.held_per_stiffness(motion);
                 (tie.ahead_of(tip, direction, h), tie.stiffness / tie.scale, held)
             })
             .collect();
@@ -191,8 +190,8 @@ impl Ties {
     }
 
     /// What all ties hold of what the leapfrog keeps [J/m]: see [`Ties::release`].
-    pub(super) fn held(&self, motion: &Motion, units: TieUnits) -> f64 {
-        self.all().map(|tie| 0.5 * tie.stiffness * tie.held_per_stiffness(motion, units)).sum()
+    pub(super) fn held(&self, motion: &Motion) -> f64 {
+        self.all().map(|tie| 0.5 * tie.stiffness * tie.held_per_stiffness(motion)).sum()
     }
 
     /// Works out how the inertia of ties couples the fields of a node.
@@ -264,7 +263,6 @@ fn same_tie<'t>(tie: &Tie, all: &[Tie], before: &'t [Tie]) -> Option<&'t Tie> {
 /// The ties that a tip should have where it is now.
 fn ties_at(lattice: &Lattice, cracks: &Cracks, id: TipId) -> Vec<Tie> {
     let h = lattice.grid.cell_size;
-    let units = TieUnits::of(lattice);
     let (tip, direction) = (cracks.position(id), cracks.last_direction(id));
     let [middle_column, middle_row] = lattice.grid.cell(tip);
     let reach = WINDOW.ceil() as i32 + 1;
@@ -280,31 +278,48 @@ fn ties_at(lattice: &Lattice, cracks: &Cracks, id: TipId) -> Vec<Tie> {
                 continue;
             }
             let fields = lattice.fields_with_mass(node);
-            let stiffness: Vec<f64> = fields.iter().map(|&field| field_stiffness(lattice, field, place)).collect();
-            let stiffness_of = |field: u32| fields.iter().zip(&stiffness).find(|f| *f.0 == field).map_or(0.0, |f| *f.1);
+            let rigidities: Vec<Rigidity> = fields.iter().map(|&field| Rigidity::of(lattice, field, place)).collect();
+            let of = |field: u32| {
+                fields.iter().zip(&rigidities).find(|f| *f.0 == field).map_or(Rigidity::default(), |f| *f.1)
+            };
             let facing = lattice.fields().facing_pairs(&fields).filter(|pair| pair.crack as usize == id.crack);
             ties.extend(facing.map(|pair| {
                 let fields = pair.above_and_below();
-                Tie::new(fields, (node as u32, place), fields.map(stiffness_of), ahead, units)
+                let [above, below] = fields.map(of);
+                let crossing = h / above.wave_speed.max(below.wave_speed);
+                Tie::new(fields, (node as u32, place), [above.stiffness, below.stiffness], crossing, ahead)
             }));
         }
     }
     ties
 }
 
-/// Stiffness of a field at a node against being moved alone: Σ_p V E' |∇w|² [Pa], with the modulus that cracks open by.
-fn field_stiffness(lattice: &Lattice, field: u32, node: Point) -> f64 {
-    let reach = Vector::repeat(lattice.reach() * lattice.grid.cell_size);
-    let mut stiffness = 0.0;
-    let mut reader = lattice.reader();
-    for p in lattice.particles.in_box(node - reach, node + reach) {
-        let e = lattice.material(p);
-        let modulus = e.effective_modulus * lattice.particles.volume[p];
-        reader.for_each_part(p, |of, share, _, gradient| {
-            if of == field as usize {
-                stiffness += share * modulus * gradient.norm_squared();
-            }
-        });
+/// How a field at a node withstands.
+#[derive(Debug, Clone, Copy, Default)]
+struct Rigidity {
+    /// Against being moved alone: Σ_p V E' |∇w|² [Pa], with the modulus that cracks open by.
+    stiffness: f64,
+    /// Speed of the fastest wave in its material [m/s]. Not that of the scene: a tie that were made for a material of
+    /// waves four times as fast would have a sixteenth of its inertia, and ask for a shorter step than the material.
+    wave_speed: f64,
+}
+
+impl Rigidity {
+    /// That of `field` at a node at `place`.
+    fn of(lattice: &Lattice, field: u32, place: Point) -> Self {
+        let reach = Vector::repeat(lattice.reach() * lattice.grid.cell_size);
+        let mut rigidity = Self::default();
+        let mut reader = lattice.reader();
+        for p in lattice.particles.in_box(place - reach, place + reach) {
+            let e = lattice.material(p);
+            let modulus = e.effective_modulus * lattice.particles.volume[p];
+            reader.for_each_part(p, |of, share, _, gradient| {
+                if of == field as usize {
+                    rigidity.stiffness += share * modulus * gradient.norm_squared();
+                    rigidity.wave_speed = rigidity.wave_speed.max(e.dilatational_wave_speed());
+                }
+            });
+        }
+        rigidity
     }
-    stiffness
 }
