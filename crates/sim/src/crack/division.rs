@@ -18,6 +18,7 @@ use fissure_plane::{Point, Vector, distance_to_segment, orientation};
 use fissure_scene::{Kernel, TipDivision};
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
+use std::ops::Range;
 
 /// What a line crosses: sorted (crack, side of the particle); empty: nothing.
 pub(crate) type CrossedSet = Vec<(u32, Side)>;
@@ -147,6 +148,9 @@ impl Line {
         let [now, was] = [self, before].map(|line| line.last as usize + 1);
         let first = (0..now.min(was)).take_while(|&k| same(k, k)).count();
         let last = (0..now.min(was) - first).take_while(|&k| same(now - 1 - k, was - 1 - k)).count();
+        // What stays, now and before.
+        let stays = [now, was].map(|count| [0..first, count - last..count]);
+        let stays = if first + last == 0 { self.between_ends(before, [now, was]).unwrap_or(stays) } else { stays };
         let has = |line: &Self, part| (0..line.segments.len()).any(|k| line.part(k) == part);
         // What a tip that has moved says of segments near to it.
         let has_moved = |tip: &&TipRay| !(self.tips.contains(tip) && before.tips.contains(tip));
@@ -157,13 +161,28 @@ impl Line {
             let reach = 2.0 * AHEAD * cell_size;
             line.at_tip[k] && moved.iter().any(|&tip| distance_to_segment(tip, a, b) < reach)
         };
-        let changed = |line: &Self, other: &Self, count: usize| -> Vec<(Point, Point)> {
-            let is_new = |k: usize| if k < count { k >= first && k < count - last } else { !has(other, line.part(k)) };
+        let changed = |line: &Self, other: &Self, stays: &[Range<usize>; 2]| -> Vec<(Point, Point)> {
+            let count = line.last as usize + 1;
+            let is_new = |k: usize| {
+                if k < count { !stays.iter().any(|part| part.contains(&k)) } else { !has(other, line.part(k)) }
+            };
             (0..line.segments.len()).filter(|&k| is_new(k) || is_near(line, k)).map(|k| line.segments[k]).collect()
         };
-        let mut segments = changed(self, before, now);
-        segments.extend(changed(before, self, was));
+        let mut segments = changed(self, before, &stays[0]);
+        segments.extend(changed(before, self, &stays[1]));
         segments
+    }
+
+    /// The segments that stay, now and before, of a crack of so many that has got on at both its ends: those around the
+    /// one that was in its middle. None where that is no longer there.
+    fn between_ends(&self, before: &Self, [now, was]: [usize; 2]) -> Option<[[Range<usize>; 2]; 2]> {
+        let middle = was / 2;
+        let added = (0..=now.checked_sub(was)?).find(|&k| self.segments[middle + k] == before.segments[middle])?;
+        let same = |k: &usize| self.part(k + added) == before.part(*k);
+        let below = (0..middle).rev().take_while(same).count();
+        let above = (middle..was).take_while(same).count();
+        let range = middle - below..middle + above;
+        Some([[range.start + added..range.end + added, 0..0], [range, 0..0]])
     }
 
     /// All that a segment divides by.
@@ -774,8 +793,8 @@ mod tests {
                 lines = given;
                 changed.set_lines(lines.clone());
             }
-            for by in grown {
-                grow(&mut lines, by);
+            for by in grown.chunks(2) {
+                by.iter().for_each(|&by| grow(&mut lines, by));
                 let before = changed.clone();
                 let boxes = changed.set_lines(lines.clone());
                 let is_outside = |p: Point| boxes.iter().all(|(low, high)| !(p >= *low && p <= *high));
@@ -789,6 +808,25 @@ mod tests {
                 let fresh = division(&lines, TipDivision::PartlyCut, cut);
                 prop_assert_eq!(&changed.lines, &fresh.lines);
                 prop_assert_eq!(&changed.buckets, &fresh.buckets);
+            }
+        }
+
+        /// Truth: the construction. Where a crack gets on at both its ends at once, what is far from both stays.
+        #[test]
+        fn a_crack_that_grows_at_both_ends_changes_only_around_them(
+            height in 1.0_f64..11.0, turns in prop::collection::vec(-0.3_f64..0.3, 2..6), cut in any_cut(),
+        ) {
+            let points = (0..=60).map(|k| Point::new(f64::from(k), height + 0.1 * f64::from(k % 2))).collect();
+            let tip = LineEnd::Tip;
+            let mut lines = vec![CrackLine { crack: 0, points, start: tip, end: tip, trunk: Vec::new() }];
+            let mut division = division(&lines, TipDivision::PartlyCut, cut);
+            for (k, turn) in turns.into_iter().enumerate() {
+                let [start, end] = [-0.3, 60.3].map(|x| Point::new(x, height + turn));
+                let by = Vector::new(0.3 * k as f64, 0.0);
+                lines[0].points.insert(0, start - by);
+                lines[0].points.push(end + by);
+                let boxes = division.set_lines(lines.clone());
+                prop_assert!(boxes.iter().all(|(low, high)| high.x < 20.0 || low.x > 40.0), "{boxes:?}");
             }
         }
 

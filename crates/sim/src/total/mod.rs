@@ -333,10 +333,10 @@ impl Solver for Total {
 
     fn recut(&mut self, cracks: &Cracks, changed: &[TipId]) -> f64 {
         self.step_at_rest = OnceLock::new();
-        let points_before = self.probes.points_of_cracks();
+        let shifts = self.probes.added_at_starts(cracks, changed);
         let mut boxes = self.lattice.set_cracks(cracks);
         let held = self.ties.held(&self.motion);
-        let divides = changed.iter().any(|id| id.crack >= points_before.len());
+        let divides = changed.iter().any(|id| id.crack >= self.probes.faces.len());
         let mut lost = self.lattice.recut(&boxes, divides, &mut self.motion);
         if changed.iter().any(|&id| cracks.end(id) != CrackEnd::Tip) {
             let around = recut::boxes_behind(cracks, changed, self.lattice.grid.cell_size);
@@ -345,7 +345,7 @@ impl Solver for Total {
         }
         let turned = std::mem::take(&mut self.lattice.turned);
         let has_mouthed = self.probes.refresh(&self.lattice, cracks, changed, &boxes, &turned);
-        let near = Near::new(&self.lattice, &boxes, cracks, changed, &points_before);
+        let near = Near::new(&self.lattice, &boxes, shifts);
         self.loads.refresh(&near, &self.scene, &self.lattice, cracks);
         self.supports.refresh(&near, &self.scene, &self.lattice);
         self.colliders.refresh(&near, &self.lattice);

@@ -1,10 +1,7 @@
 //! Where a crack has grown: what is made from the lattice is made anew there and stays elsewhere.
 
 use super::lattice::Lattice;
-use crate::crack::Crack;
-use crate::crack::cracks::{Cracks, TipId};
 use fissure_plane::{Point, Vector};
-use fissure_scene::End;
 
 /// Where something has changed.
 #[derive(Debug)]
@@ -15,24 +12,14 @@ pub(super) struct Near {
 }
 
 impl Near {
-    /// Around the boxes within which stencils of `lattice` have changed, because `changed` ends have. `points_before`:
-    /// number of points of each crack before.
-    pub(super) fn new(
-        lattice: &Lattice,
-        boxes: &[(Point, Point)],
-        cracks: &Cracks,
-        changed: &[TipId],
-        points_before: &[usize],
-    ) -> Self {
+    /// Around the boxes within which stencils of `lattice` have changed. `shifts`: how many points each crack has got
+    /// at its start.
+    pub(super) fn new(lattice: &Lattice, boxes: &[(Point, Point)], shifts: Vec<u32>) -> Self {
         // Particles at the rim of a box, up to two rows beyond it, have given mass to nodes outside it, or taken it
         // from them.
         let reach = Vector::repeat((lattice.reach() + 1.0) * lattice.grid.cell_size);
         let boxes = boxes.iter().map(|(low, high)| (low - reach, high + reach)).collect();
-        let shift = |(index, crack): (usize, &Crack)| match points_before.get(index) {
-            Some(&before) if changed.contains(&TipId::new(index, End::Start)) => (crack.points.len() - before) as u32,
-            _ => 0,
-        };
-        Self { boxes, shifts: cracks.iter().enumerate().map(shift).collect() }
+        Self { boxes, shifts }
     }
 
     /// Whether a place at rest lies where something has changed.

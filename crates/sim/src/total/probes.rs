@@ -32,10 +32,8 @@ impl Lattice {
     /// Probes of both faces of a crack that had those of `before`, which stay where nothing around them `has_changed`.
     fn face_probes_after(&self, crack: &Crack, before: &mut Faces, has_changed: impl Fn(&Probe) -> bool) -> Faces {
         let points = &crack.points;
-        let added = points.len().saturating_sub(before[0].len());
-        // By how much the numbers of the points have moved up. Its ends may have moved, the points between stay.
-        let continues = |&shift: &usize| before[0].get(1).is_some_and(|old| points.get(shift + 1) == Some(&old.rest));
-        let shift = (0..=added).find(continues).unwrap_or(points.len());
+        // Where nothing is known to have stayed, all is laid anew.
+        let shift = added_at_start(crack, before).unwrap_or(points.len());
         let mut faces = Faces::default();
         for (side, (new, old)) in [Side::Above, Side::Below].into_iter().zip(faces.iter_mut().zip(before)) {
             new.extend((0..points.len()).map(|k| {
@@ -69,6 +67,15 @@ impl Lattice {
         };
         crack.points[k] + toward * (NUDGE * self.grid.cell_size)
     }
+}
+
+/// How many points a crack has got at its start since its faces were laid; none where that cannot be told. Its ends may
+/// have moved, the points between stay.
+fn added_at_start(crack: &Crack, before: &Faces) -> Option<usize> {
+    let points = &crack.points;
+    let added = points.len().saturating_sub(before[0].len());
+    let old = before[0].get(1)?;
+    (0..=added).find(|&shift| points.get(shift + 1) == Some(&old.rest))
 }
 
 /// The faces of one crack, above and below, with one probe at each of its points.
@@ -177,9 +184,17 @@ impl Probes {
         self.outlines.open_mouth(cracks.position(id), id.end, faces, lattice.grid.cell_size);
     }
 
-    /// Number of points of each crack when its faces were laid.
-    pub(super) fn points_of_cracks(&self) -> Vec<usize> {
-        self.faces.iter().map(|faces| faces[0].len()).collect()
+    /// How many points `changed` ends have added to the start of each crack since its faces were laid.
+    pub(super) fn added_at_starts(&self, cracks: &Cracks, changed: &[TipId]) -> Vec<u32> {
+        let mut added = vec![0; cracks.len()];
+        for id in changed.iter().filter(|id| id.end == End::Start) {
+            let Some(faces) = self.faces.get(id.crack) else { continue };
+            let crack = cracks.of(*id);
+            // Of two points both may have moved.
+            let at_most = crack.points.len().saturating_sub(faces[0].len());
+            added[id.crack] = added_at_start(crack, faces).unwrap_or(at_most) as u32;
+        }
+        added
     }
 
     /// Normal of a segment of a crack now, from below to above: across the mean of the two faces. None where it has no
@@ -193,5 +208,37 @@ impl Probes {
         let tangent = (to.rest - from.rest) + (mean(s + 1) - mean(s));
         let length = tangent.norm();
         (length > 0.0).then(|| Vector::new(-tangent.y, tangent.x) / length)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::Total;
+    use super::*;
+    use crate::particles::Particles;
+    use crate::test_scenes;
+    use fissure_scene::Formulation;
+    use std::sync::Arc;
+
+    /// Truth: the construction. What a crack gets at its end does not move the numbers of its points up.
+    #[test]
+    fn points_at_the_start_are_counted_whatever_comes_at_the_end() {
+        let mut scene = test_scenes::free_body(test_scenes::rectangle([0.0, 0.0], [4.0, 4.0]), 0.1);
+        scene.solver.formulation = Formulation::Total;
+        test_scenes::add_crack(&mut scene, &[[1.5, 2.03], [2.0, 2.05], [2.5, 2.03]]);
+        let first = Cracks::of_scene(&scene);
+        let total = Total::new(&scene, Arc::new(Particles::fill(&scene).unwrap()), &first).unwrap();
+        let ids = [End::Start, End::End].map(|end| TipId::new(0, end));
+        for grown in [[0, 1], [1, 0], [1, 1], [2, 1], [1, 3]] {
+            let mut cracks = first.clone();
+            for (id, count) in ids.into_iter().zip(grown) {
+                let ahead = cracks.last_direction(id) * 0.05;
+                for _ in 0..count {
+                    cracks.grow(id, &[cracks.position(id) + ahead]);
+                }
+            }
+            assert_eq!(total.probes.added_at_starts(&cracks, &ids), [grown[0]], "{grown:?}");
+        }
     }
 }
