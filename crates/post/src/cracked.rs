@@ -12,6 +12,7 @@ use crate::held_open::{parted_points, shifts as held_open};
 use crate::history::{attributes, histories};
 use crate::interior::Interior;
 use crate::mesh::{Content, Mesh, MeshDefect, object_name};
+use crate::narrows::part_narrows;
 use crate::needles::blunt_needles;
 use crate::options::PostOptions;
 use crate::outline::outline_edges;
@@ -36,6 +37,11 @@ use std::collections::BTreeMap;
 /// on each other sink in by up to a tenth of a cell, what has no particle of its own by some more, and shards of a few
 /// particles, driven into each other by others, by up to .36 (`glass-impact`).
 const WIDEST_OVERLAP: f64 = 0.4;
+
+/// What an edge may become shorter by as its ends go to the grid, in grid steps.
+const ROUNDING: f64 = 3.0;
+/// Where needles and narrow places have gone there may be others beside them; so many times at most.
+const ROUNDS: usize = 8;
 
 /// Body and number of an object.
 type ObjectKey = (u32, u32);
@@ -287,8 +293,21 @@ impl<'a> Solids<'a> {
         Ok(enclosed)
     }
 
-    /// Parts contours that touch, and takes short edges out of them.
+    /// Parts contours that touch or nearly do, and takes short edges out of them.
     fn tidy(&self, of: &mut Enclosed, growth: Growth) -> Result<(), PostError> {
+        self.tidy_once(of, growth)?;
+        if !holds_open(self.options) {
+            for _ in 0..ROUNDS {
+                if !part_narrows(&mut of.shapes, of.least, growth, &mut of.sources) {
+                    break;
+                }
+                self.tidy_once(of, growth)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn tidy_once(&self, of: &mut Enclosed, growth: Growth) -> Result<(), PostError> {
         let body = &self.scene.bodies[of.body as usize];
         let parted =
             part_pinches(std::mem::take(&mut of.shapes), &mut of.sources, 0.25 * of.least).map_err(|place| {
@@ -297,16 +316,20 @@ impl<'a> Solids<'a> {
             })?;
         of.shapes = without_slivers(parted);
         let sources = &mut of.sources;
-        if !holds_open(self.options) {
+        let is_drawn = |edge: &Edge, source: &SourceEdge| is_drawn(&body.region, edge, source);
+        if holds_open(self.options) {
+            without_short_edges(&mut of.shapes, of.least, growth, sources, is_drawn);
+            return Ok(());
+        }
+        let wide = if of.least > 0.0 { of.least + ROUNDING } else { 0.0 };
+        for _ in 0..ROUNDS {
             let is_inside = |edge: &Edge| sources[edge.source.0 as usize].slot == Slot::Inside;
             fill_narrow_holes(&mut of.shapes, of.least, is_inside);
             drop_narrow_parts(&mut of.shapes, of.least, is_inside);
-        }
-        let is_drawn = |edge: &Edge, source: &SourceEdge| is_drawn(&body.region, edge, source);
-        without_short_edges(&mut of.shapes, of.least, growth, sources, is_drawn);
-        if !holds_open(self.options) {
-            blunt_needles(&mut of.shapes, of.least, growth, sources);
             without_short_edges(&mut of.shapes, of.least, growth, sources, is_drawn);
+            if !blunt_needles(&mut of.shapes, wide, growth, sources) {
+                break;
+            }
         }
         Ok(())
     }

@@ -18,6 +18,7 @@
 //! 5. `pinch`: contours that touch in a point are parted, so that the solid is manifold for every reader.
 //! 6. `short_edges`, `needles`: edges that readers which merge by distance would close are taken out, and corners that
 //!    are so sharp that these would close them end bluntly.
+//!    `narrows`: necks and channels narrower than that are cut and closed: triangles in them would have shorter edges.
 //! 7. `overlaps`: fragments that lie in each other a little share the middle; then steps 4 to 6 once more.
 //! 8. `triangulate`, `interior`, `extrude`: caps of triangles without small angles, and walls, with normals, texture
 //!    coordinates, velocities and material slots.
@@ -58,6 +59,7 @@ mod interior;
 #[cfg(feature = "files")]
 mod manifest;
 mod mesh;
+mod narrows;
 mod needles;
 mod opening;
 mod options;

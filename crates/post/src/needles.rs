@@ -21,8 +21,9 @@ const SHARP: f64 = 60.0;
 const MOST_EDGES: usize = 64;
 
 /// Ends sharp corners bluntly where their sides are `least` grid steps apart. `sources` receives the edges across.
-/// Corners of outlines stay, and those of cracks where polygons may hardly grow.
-pub(crate) fn blunt_needles(shapes: &mut [Shape], least: f64, growth: Growth, sources: &mut Vec<SourceEdge>) {
+/// Corners of outlines stay, and those of cracks where polygons may hardly grow. Tells whether there were any.
+pub(crate) fn blunt_needles(shapes: &mut [Shape], least: f64, growth: Growth, sources: &mut Vec<SourceEdge>) -> bool {
+    let mut any = false;
     for shape in 0..shapes.len() {
         for contour in 0..shapes[shape].len() {
             let mut i = 0;
@@ -35,10 +36,11 @@ pub(crate) fn blunt_needles(shapes: &mut [Shape], least: f64, growth: Growth, so
                 };
                 needle.cut(&mut shapes[shape][contour], sources);
                 // What comes before may be sharp now.
-                i = 0;
+                (i, any) = (0, true);
             }
         }
     }
+    any
 }
 
 /// A sharp corner between two edges of a contour, and where it is to end.

@@ -100,7 +100,7 @@ fn remedy(arms: &[Arm]) -> Operation {
 }
 
 /// A counter-clockwise diamond around `center` whose walls carry what the material at the centre carries.
-fn diamond(center: GridPoint, radius: i64, near: SourceIndex, sources: &mut Vec<SourceEdge>) -> Contour {
+pub(crate) fn diamond(center: GridPoint, radius: i64, near: SourceIndex, sources: &mut Vec<SourceEdge>) -> Contour {
     let carried = sources[near.0 as usize].at(center);
     let corner = |x: i64, y: i64| GridPoint::new(center.x + x * radius, center.y + y * radius);
     let corners = [corner(1, 0), corner(0, 1), corner(-1, 0), corner(0, -1)];

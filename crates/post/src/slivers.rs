@@ -27,12 +27,13 @@ pub(crate) fn fill_narrow_holes(shapes: &mut [Shape], narrowest: f64, is_inside:
     }
 }
 
-/// Drops what lies apart from the rest, with a mean width below `narrowest` grid steps and edges of cracks only, which
-/// `is_inside` knows: hairs between cracks that are shown wider than they are. The largest part stays.
+/// Drops what lies apart from the rest, with a mean width below `narrowest` grid steps and an edge of a crack, which
+/// `is_inside` knows: hairs between cracks that are shown wider than they are, and splinters beside an outline. The
+/// largest part stays.
 pub(crate) fn drop_narrow_parts(shapes: &mut Vec<Shape>, narrowest: f64, is_inside: impl Fn(&Edge) -> bool) {
     let area = |shape: &Shape| shape.iter().map(|contour| twice_area(contour)).sum::<i128>();
     let Some(largest) = shapes.iter().map(area).max() else { return };
-    let is_hair = |outer: &[Edge]| is_narrower(outer, narrowest) && outer.iter().all(&is_inside);
+    let is_hair = |outer: &[Edge]| is_narrower(outer, narrowest) && outer.iter().any(&is_inside);
     shapes.retain(|shape| area(shape) == largest || !shape.first().is_some_and(|outer| is_hair(outer)));
 }
 
