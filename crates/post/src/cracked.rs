@@ -4,6 +4,7 @@ use crate::bevel::BevelSize;
 use crate::body_names::body_names;
 use crate::boolean::{Edge, Shape, SourceIndex, common, material, twice_area};
 use crate::closed::shifts as closed;
+use crate::crumbs::hold_crumb;
 use crate::edges::MovedLines;
 use crate::error::PostError;
 use crate::explode::offsets;
@@ -95,7 +96,11 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
     let mut own = Boundaries::new();
     for (fragment, number) in fragments.list().iter().zip(numbers) {
         let (grid, object) = (grids[fragment.body as usize], (fragment.body, number));
-        let boundaries = fragment.boundaries.iter().map(|boundary| lines.edges(boundary, grid)).collect();
+        let mut boundaries: Vec<Vec<SourceEdge>> =
+            fragment.boundaries.iter().map(|boundary| lines.edges(boundary, grid)).collect();
+        if options.opening.is_none() {
+            hold_crumb(&mut boundaries, frame, object, scene.particle_spacing, grid);
+        }
         objects.entry(object).or_default().push(boundaries);
         if let Some(lines) = &own_lines {
             let edges = fragment.boundaries.iter().flat_map(|boundary| lines.edges(boundary, grid));

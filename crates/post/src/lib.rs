@@ -9,7 +9,8 @@
 //!    length of the material at their ends. `outline`: a body without its cracks.
 //!    `smooth`: paths of cracks without their zigzag. `rest_cut`: triangles at rest that the material carries, in place
 //!    of steps 3 to 7.
-//!    `closed`: cracks within a fragment are closed where they are hardly open.
+//!    `crumbs`: fragments of a few particles move as these do. `closed`: cracks within a fragment are closed where they
+//!    are hardly open.
 //! 3. `boolean`: a fragment is where its own edges wind around a place at least once. An open crack in it takes one
 //!    off; where its faces overlap one is added, so cracks that are closed have no walls, unless all are to have some
 //!    (`held_open`), or cracks are shown wider than they are (`widening`). Fragments may turn, fly
@@ -46,6 +47,7 @@ mod colliders;
 #[path = "../tests/common/mod.rs"]
 mod common;
 mod cracked;
+mod crumbs;
 mod drawn_curve;
 mod edges;
 mod error;

@@ -51,11 +51,16 @@ impl Grid {
     /// # Errors
     /// [`PostError::TooFar`]
     pub(crate) fn check(self, frame: i64, name: &str, size: f64) -> Result<(), PostError> {
-        let reach = self.step * 2.0_f64.powi(MANTISSA_BITS);
+        let reach = self.reach();
         if self.step * LEAST_STEPS <= size {
             return Ok(());
         }
         Err(PostError::TooFar { frame, name: name.to_owned(), reach, step: self.step, size })
+    }
+
+    /// How far from the origin grid points are exact in `f32`, along each axis [m].
+    pub(crate) fn reach(self) -> f64 {
+        self.step * 2.0_f64.powi(MANTISSA_BITS)
     }
 
     /// The grid point nearest to `point`.
