@@ -18,8 +18,8 @@ Reads the GLB files of the part `cracked` in each FOLDER, made from TAKE. One ro
     open      objects that are not watertight, by themselves or when trimesh merges their vertices
     merged    objects that are not when all vertices nearer than 1e-4 of the size of the body are merged
 
-Fails where a solid is open, a volume is off by more than 1e-6, an area by more than 1e-3, or where two objects have more
-than 1e-4 of the smaller one in common.
+Fails where a solid is open, also once vertices are merged, a volume is off by more than 1e-6, an area by more than 1e-3, or
+where two objects have more than 1e-4 of the smaller one in common.
 """
 
 import json
@@ -218,7 +218,7 @@ def main(arguments):
     for take, folder in zip(*[iter(map(pathlib.Path, arguments))] * 2):
         found = measure(take, folder)
         print(f"{folder.name[:15]:16}" + "".join(f"{found[column]:10.2g}" for column in COLUMNS), flush=True)
-        failed |= found["open"] > 0 or found["volume"] > VOLUME or found["area"] > AREA or found["overlap"] > OVERLAP
+        failed |= found["open"] > 0 or found["merged"] > 0 or found["volume"] > VOLUME or found["area"] > AREA or found["overlap"] > OVERLAP
     sys.exit(bool(failed))
 
 
