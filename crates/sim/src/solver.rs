@@ -114,6 +114,12 @@ pub(crate) trait Observed {
     /// The material within `radius` [m] of a tip.
     fn tip_zone(&self, cracks: &Cracks, id: TipId, radius: f64) -> TipZone;
 
+    /// As [`Observed::tip_zone`], but all points are said to be above the crack: what J does not ask for. None where
+    /// faces do something to each other or something presses on them.
+    fn zone_without_sides(&self, _cracks: &Cracks, _id: TipId, _radius: f64) -> Option<TipZone> {
+        None
+    }
+
     /// Current position of a tip [m] and the current direction ahead of it (unit vector).
     fn tip_now(&self, cracks: &Cracks, id: TipId) -> (Point, Vector);
 }

@@ -117,6 +117,7 @@ impl TimedPlate {
     pub fn time(&self, cells: u16, least: Duration) -> Result<Option<Rate>, SimulationError> {
         let Some(scene) = self.scene(cells) else { return Ok(None) };
         let mut simulation = Simulation::new(&scene)?;
+        simulation.spare_looks();
         let particles = simulation.particles();
         let first = STEPS_TO_LOAD * u64::from(cells);
         let mut started: Option<(u64, u64, Duration, Instant)> = None;

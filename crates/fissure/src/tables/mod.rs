@@ -50,6 +50,9 @@ impl Tables {
         if is_wanted(TableName::Contours) {
             simulation.watch_contours();
         }
+        if !is_wanted(TableName::Looks) && !is_wanted(TableName::Contours) {
+            simulation.spare_looks();
+        }
         let simulation = &*simulation;
         let looks = is_wanted(TableName::Looks).then(|| Looks::open(folder, simulation));
         let contours = is_wanted(TableName::Contours).then(|| Contours::open(folder, simulation));

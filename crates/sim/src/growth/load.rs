@@ -58,6 +58,12 @@ pub(crate) fn toughness_ahead(cracks: &Cracks, id: TipId, assessed: &Assessment,
     toughness_at(cracks.of(id), cracks.position(id) + way(cracks, id, assessed, scene) * half, scene)
 }
 
+/// Fracture toughness of all that a tip may break [Pa·√m]; none where it is not the same everywhere.
+pub(crate) fn toughness_everywhere(cracks: &Cracks, id: TipId, scene: &Scene) -> Option<f64> {
+    let line = cracks.of(id);
+    (!is_varied(line, scene)).then(|| toughness_at(line, cracks.position(id), scene))
+}
+
 /// K_eq [Pa·√m] for the direction the tip would take: what was measured for the physical direction, times how much less
 /// that one gets of it.
 fn equivalent(cracks: &Cracks, id: TipId, assessed: &Assessment, scene: &Scene) -> f64 {

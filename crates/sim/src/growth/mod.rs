@@ -23,5 +23,5 @@ pub(crate) use barrier::is_free;
 pub(crate) use branching::branches;
 pub(crate) use heading::heading;
 pub(crate) use increment::next_increment;
-pub(crate) use load::{Cost, assess, cost, critical_release, toughness_ahead, wants_to_grow};
+pub(crate) use load::{Cost, assess, cost, critical_release, toughness_ahead, toughness_everywhere, wants_to_grow};
 pub(crate) use speed::speed_limit;

@@ -48,6 +48,8 @@ pub struct Simulation {
     counts: Counts,
     stages: StageWatch,
     contours: ContourWatch,
+    /// See [`Simulation::spare_looks`].
+    spares_looks: bool,
     /// Largest stable time step at the last look [s].
     stable_time_step: f64,
 }
@@ -128,6 +130,7 @@ impl Simulation {
             counts: Counts::default(),
             stages: StageWatch::default(),
             contours: ContourWatch::default(),
+            spares_looks: false,
             stable_time_step: 0.0,
         };
         simulation.split_fragments();

@@ -80,6 +80,7 @@ impl Simulation {
             counts: Counts::default(),
             stages: super::stages::StageWatch::default(),
             contours: super::contours::ContourWatch::default(),
+            spares_looks: false,
             stable_time_step: 0.0,
         })
     }

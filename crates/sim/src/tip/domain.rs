@@ -80,10 +80,7 @@ pub(crate) fn domain_integrals(
         }
         let u_1 = p.gradient.column(0);
         let inertia = if dynamic { p.density } else { 0.0 };
-        let kinetic = 0.5 * inertia * p.velocity.norm_squared();
-        let flux = (p.stress.transpose() * u_1).dot(&slope) - (p.energy + kinetic) * slope.x;
-        let area = inertia * (p.acceleration.dot(&u_1) - p.velocity.dot(&p.velocity_slope)) * q;
-        j += p.volume * (flux + area);
+        j += release_of(p, (q, slope), inertia);
         let own = &elastic[p.material as usize];
         let place = out_of_core(beside_crack(p.place, p.side), p.volume);
         let strain = (p.gradient + p.gradient.transpose()) * 0.5;
@@ -122,6 +119,25 @@ pub(crate) fn domain_integrals(
     let [mode_1, mode_2] = m.map(|m| half_modulus * m);
     j -= of_tip * mode_2 + faces.near([mode_1, mode_2]);
     DomainIntegrals { j_integral: j, mode_1, mode_2, closed: pressed && !opened }
+}
+
+/// J over the disc of radius `outer` [m] around a tip whose faces nothing presses on [J/m²]: see [`domain_integrals`].
+pub(super) fn release_rate(zone: &TipZone, cell_size: f64, outer: f64, dynamic: bool) -> f64 {
+    let inner = INNER_RADIUS * cell_size;
+    let of = |p: &QuadraturePoint| {
+        let (q, slope) = weight(p.place, inner, outer);
+        if q == 0.0 { 0.0 } else { release_of(p, (q, slope), if dynamic { p.density } else { 0.0 }) }
+    };
+    zone.points.iter().map(of).sum()
+}
+
+/// What a point adds to J [J/m], where q and ∇q are `weight`; `inertia`: its density, or none [kg/m³].
+fn release_of(p: &QuadraturePoint, (q, slope): (f64, Vector), inertia: f64) -> f64 {
+    let u_1 = p.gradient.column(0);
+    let kinetic = 0.5 * inertia * p.velocity.norm_squared();
+    let flux = (p.stress.transpose() * u_1).dot(&slope) - (p.energy + kinetic) * slope.x;
+    let area = inertia * (p.acceleration.dot(&u_1) - p.velocity.dot(&p.velocity_slope)) * q;
+    p.volume * (flux + area)
 }
 
 /// What a node's force on a face is spread over.

@@ -9,7 +9,7 @@ use crate::material::elastic::Elastic;
 use crate::solver::Observed;
 use crate::tip::contour::{Contour, ContourHalf, ContourSample};
 use crate::tip::contours::KERNEL_REACH;
-use crate::tip::domain::domain_integrals;
+use crate::tip::domain::{domain_integrals, release_rate};
 use crate::tip::reciprocal::{Setting, reciprocal_integrals};
 use crate::tip::zone::{QuadraturePoint, TipZone};
 use fissure_scene::{JMethod, Matrix, ModeSplit, Point, Scene, Vector};
@@ -28,6 +28,10 @@ const WIDE_RADIUS: f64 = 6.0;
 const KINK_MARGIN: f64 = 1.0;
 /// A branch has a field of its own from this length on, in cells: growth by a quarter of a cell, but for round-off.
 const SHORTEST_BRANCH: f64 = 0.24;
+
+/// K_eq of a tip is at most so many times √(E'J): of all ratios of the modes K_II = √3 K_I has the largest hoop stress,
+/// 3√3/4 times that of mode I alone.
+const MOST_EQUIVALENT: f64 = 1.3;
 
 /// What the integrals around a tip give. What it means for growth is said by [`crate::growth::assess`].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -108,6 +112,25 @@ impl Gauge<'_> {
             contour_radius: radius,
             radius_shrunk,
         }
+    }
+
+    /// The highest K_eq that a tip can have with the J that a look would find, be its modes what they are [Pa·√m];
+    /// infinite where that is not known without a look.
+    pub(crate) fn highest_equivalent(&self, moment: &dyn Observed, cracks: &Cracks, id: TipId) -> f64 {
+        if self.scene.solver.j_method != JMethod::Domain {
+            return f64::INFINITY;
+        }
+        let (radius, _, kink) = self.domain_radius(moment, cracks, id);
+        if kink.is_some() {
+            return f64::INFINITY;
+        }
+        let Some(mut zone) = moment.zone_without_sides(cracks, id, radius) else { return f64::INFINITY };
+        zone.take_off_mean_velocity();
+        let Some(elastic) = self.material_at_tip(&zone) else { return f64::INFINITY };
+        let j = release_rate(&zone, self.scene.cell_size, radius, self.scene.solver.area_term);
+        // A NaN stays one: the square root of the larger of two numbers would be that of 0.
+        let released = if j < 0.0 { 0.0 } else { j };
+        MOST_EQUIVALENT * (elastic.effective_modulus * released).sqrt()
     }
 
     /// The material of the particle nearest to a tip; none: there are no particles.

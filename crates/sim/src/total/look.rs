@@ -42,62 +42,10 @@ impl Observed for Look<'_> {
 
     fn tip_zone(&self, cracks: &Cracks, id: TipId, radius: f64) -> TipZone {
         let Self { lattice, motion, .. } = *self;
-        let particles = &lattice.particles;
-        let line = cracks.of(id);
         let tip = cracks.position(id);
-        let ahead = cracks.ahead(id, DIRECTION_LENGTH * lattice.grid.cell_size);
-        let s = particles.spacing;
-        let center = (tip - particles.anchor) / s;
-        let reach = (radius / s).ceil() as i32 + 1;
-        let center = [center.x.floor() as i32, center.y.floor() as i32];
-        let mut found: Vec<(usize, Matrix, ParticleRates)> = Vec::new();
-        let mut mean = Matrix::zeros();
-        let mut reader = lattice.reader();
-        let (low, high) = (center.map(|c| c.saturating_sub(reach)), center.map(|c| c.saturating_add(reach)));
-        for p in particles.within(low, high) {
-            if (particles.rest[p] - tip).norm_squared() < radius * radius && particles.body[p] == line.body {
-                let (h, rates) = reader.strain_and_rates(p, motion);
-                mean += h;
-                found.push((p, h, rates));
-            }
-        }
-        let mean = mean / found.len().max(1) as f64;
-        // Rigid turn R of the surroundings (polar decomposition of the mean F), then into the tip frame.
-        let (rotation, _) = turn(2.0 + mean.m11 + mean.m22, mean.m21 - mean.m12);
-        let back = rotation.transpose();
-        let (_, back_minus_one) = turn(2.0 + mean.m11 + mean.m22, mean.m12 - mean.m21);
-        let frame = Matrix::new(ahead.x, ahead.y, -ahead.y, ahead.x);
         let around = LineAround::new(cracks, id, radius, |crack, point| cracks[crack].points[point]);
-        let mut points = Vec::with_capacity(found.len());
-        for (p, h, rates) in found {
-            let e = lattice.material(p);
-            let into = |m: Matrix| frame * m * frame.transpose();
-            let part = |h: Matrix, rates: ParticleRates, (share, way): (f64, Vector)| {
-                let place = particles.rest[p] + way;
-                let arm = place - tip;
-                let ParticleRates { displacement, velocity, velocity_gradient, acceleration } = rates;
-                let velocity = velocity - acceleration * self.half_step;
-                QuadraturePoint {
-                    place: frame * arm,
-                    displacement: frame * (back * (displacement + h * way) + back_minus_one * arm),
-                    side: around.side_of(ahead, place),
-                    volume: particles.volume[p] * share,
-                    stress: into(back * crate::first_piola_stress(&h, e.mu, e.lambda)),
-                    gradient: into(back * h + back_minus_one),
-                    energy: crate::energy_density(&h, e.mu, e.lambda),
-                    density: e.density,
-                    velocity: frame * (back * velocity),
-                    velocity_slope: frame * (back * (velocity_gradient * ahead)),
-                    acceleration: frame * (back * acceleration),
-                    material: particles.material[p],
-                }
-            };
-            let whole = (1.0, Vector::zeros());
-            points.push(part(h, rates, lattice.layout.cut.part_of(p).unwrap_or(whole)));
-            if let (Some(h), Some(rates)) = (reader.far_strain(p, &motion.displacement), reader.far_rates(p, motion)) {
-                points.push(part(h, rates, lattice.layout.far.part_of(p).unwrap_or(whole)));
-            }
-        }
+        let side_of = |ahead: Vector, place: Point| around.side_of(ahead, place);
+        let (points, frame, [back, back_minus_one]) = self.points_around(cracks, id, radius, side_of);
         let (opening, opening_distance) = self.opening(cracks, id, frame * back);
         let into = frame * back;
         let trail = cracks.trail(id);
@@ -140,6 +88,15 @@ impl Observed for Look<'_> {
         TipZone { points, contacts, face_loads, bend, opening, opening_distance, follows_line: lattice.has_ties() }
     }
 
+    fn zone_without_sides(&self, cracks: &Cracks, id: TipId, radius: f64) -> Option<TipZone> {
+        let is_pressed = cracks.trail(id).iter().any(|&stretch| self.contacts.forces(stretch).next().is_some());
+        if is_pressed || !self.lattice.has_ties() || self.loads.on_faces(id.crack).next().is_some() {
+            return None;
+        }
+        let points = self.points_around(cracks, id, radius, |_, _| Side::Above).0;
+        Some(TipZone { points, follows_line: true, ..TipZone::default() })
+    }
+
     fn tip_now(&self, cracks: &Cracks, id: TipId) -> (Point, Vector) {
         let faces = &self.probes.faces[id.crack];
         let u = &self.motion.displacement;
@@ -150,6 +107,73 @@ impl Observed for Look<'_> {
 }
 
 impl Look<'_> {
+    /// The points around a tip in its frame, the frame, and the turn of its surroundings taken back, less 1 too.
+    fn points_around(
+        &self,
+        cracks: &Cracks,
+        id: TipId,
+        radius: f64,
+        side_of: impl Fn(Vector, Point) -> Side,
+    ) -> (Vec<QuadraturePoint>, Matrix, [Matrix; 2]) {
+        let Self { lattice, motion, .. } = *self;
+        let particles = &lattice.particles;
+        let line = cracks.of(id);
+        let tip = cracks.position(id);
+        let ahead = cracks.ahead(id, DIRECTION_LENGTH * lattice.grid.cell_size);
+        let s = particles.spacing;
+        let center = (tip - particles.anchor) / s;
+        let reach = (radius / s).ceil() as i32 + 1;
+        let center = [center.x.floor() as i32, center.y.floor() as i32];
+        let mut found: Vec<(usize, Matrix, ParticleRates)> = Vec::new();
+        let mut mean = Matrix::zeros();
+        let mut reader = lattice.reader();
+        let (low, high) = (center.map(|c| c.saturating_sub(reach)), center.map(|c| c.saturating_add(reach)));
+        for p in particles.within(low, high) {
+            if (particles.rest[p] - tip).norm_squared() < radius * radius && particles.body[p] == line.body {
+                let (h, rates) = reader.strain_and_rates(p, motion);
+                mean += h;
+                found.push((p, h, rates));
+            }
+        }
+        let mean = mean / found.len().max(1) as f64;
+        // Rigid turn R of the surroundings (polar decomposition of the mean F), then into the tip frame.
+        let (rotation, _) = turn(2.0 + mean.m11 + mean.m22, mean.m21 - mean.m12);
+        let back = rotation.transpose();
+        let (_, back_minus_one) = turn(2.0 + mean.m11 + mean.m22, mean.m12 - mean.m21);
+        let frame = Matrix::new(ahead.x, ahead.y, -ahead.y, ahead.x);
+        let mut points = Vec::with_capacity(found.len());
+        for (p, h, rates) in found {
+            let e = lattice.material(p);
+            let into = |m: Matrix| frame * m * frame.transpose();
+            let part = |h: Matrix, rates: ParticleRates, (share, way): (f64, Vector)| {
+                let place = particles.rest[p] + way;
+                let arm = place - tip;
+                let ParticleRates { displacement, velocity, velocity_gradient, acceleration } = rates;
+                let velocity = velocity - acceleration * self.half_step;
+                QuadraturePoint {
+                    place: frame * arm,
+                    displacement: frame * (back * (displacement + h * way) + back_minus_one * arm),
+                    side: side_of(ahead, place),
+                    volume: particles.volume[p] * share,
+                    stress: into(back * crate::first_piola_stress(&h, e.mu, e.lambda)),
+                    gradient: into(back * h + back_minus_one),
+                    energy: crate::energy_density(&h, e.mu, e.lambda),
+                    density: e.density,
+                    velocity: frame * (back * velocity),
+                    velocity_slope: frame * (back * (velocity_gradient * ahead)),
+                    acceleration: frame * (back * acceleration),
+                    material: particles.material[p],
+                }
+            };
+            let whole = (1.0, Vector::zeros());
+            points.push(part(h, rates, lattice.layout.cut.part_of(p).unwrap_or(whole)));
+            if let (Some(h), Some(rates)) = (reader.far_strain(p, &motion.displacement), reader.far_rates(p, motion)) {
+                points.push(part(h, rates, lattice.layout.far.part_of(p).unwrap_or(whole)));
+            }
+        }
+        (points, frame, [back, back_minus_one])
+    }
+
     /// Opening of the faces some way behind a tip, in the tip frame, and that distance.
     fn opening(&self, cracks: &Cracks, id: TipId, into: Matrix) -> (Vector, f64) {
         let line = cracks.of(id);
