@@ -371,7 +371,8 @@ impl Simulation {
     }
 
     /// From now on, between frames, tips at rest that cannot come near to growth are not measured: [`Simulation::tips`]
-    /// tells what was measured before. Changes nothing of the run and of its frames.
+    /// tells what was measured before. Changes nothing of the run, and of its frames only what they tell of a tip that
+    /// another crack has ended: that is of its last look.
     pub fn spare_looks(&mut self) {
         self.spares_looks = true;
     }
