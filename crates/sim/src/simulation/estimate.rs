@@ -48,7 +48,7 @@ pub struct TimeParts {
 }
 
 /// Seconds that parts of a run take. Fitted to the stages of the examples on one core of a server of 2023 (`fissure
-/// chart stages`).
+/// chart stages`), which has AVX-512.
 struct Costs {
     /// A step of a particle in the total formulation, with the four nodes of the bilinear kernel.
     total_step: f64,
@@ -62,7 +62,7 @@ struct Costs {
     grown_cell: f64,
     /// ... which takes by this part more for every other crack, ...
     other_crack: f64,
-    /// ... up to so many times as long: 5 to 13 ms with one crack, twice that with six and more.
+    /// ... up to so many times as long.
     most_others: f64,
     /// One particle of one frame: recorded, written, its state saved.
     recorded: f64,
@@ -71,14 +71,14 @@ struct Costs {
 }
 
 const COSTS: Costs = Costs {
-    total_step: 4.5e-9,
-    cut_step: 1e-6,
-    updated_step: 2.2e-8,
-    look: 1e-4,
-    grown_cell: 0.008,
+    total_step: 2.4e-9,
+    cut_step: 1.3e-6,
+    updated_step: 8e-9,
+    look: 4e-5,
+    grown_cell: 0.0025,
     other_crack: 0.15,
     most_others: 2.0,
-    recorded: 6.5e-7,
+    recorded: 3.5e-7,
     start: 0.02,
 };
 
