@@ -25,8 +25,9 @@ fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationErr
         let of = format!("mouth at {height} cells");
         tally.say(&of);
         let y = height * cell_size;
-        // [%].
-        let uneven = if (2.0 * height).fract() == 0.0 { 1e-6 } else { 15.0 };
+        // [%]. What lies elsewhere on the grid has its mouth at other heights.
+        let is_even = tally.is_natural() && (2.0 * height).fract() == 0.0;
+        let uneven = if is_even { 1e-6 } else { 15.0 };
         // The grid is counted from the lower edge, which does not move with the crack.
         let body = rectangle((0.0, -ARM), (LENGTH, (2.0 * height * cell_size) + ARM));
         let ring = [[0.0, 0.0], [0.014, -0.0015], [0.03, -0.0015], [0.03, 0.0015], [0.014, 0.0015]];
