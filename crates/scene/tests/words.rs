@@ -113,6 +113,11 @@ fn a_value_of_the_wrong_kind_is_told_what_the_key_takes() {
         ),
         ("[[support]]\nvelocity_x = [1, 0]\n", "a number", "Velocity along x"),
         ("[[collider]]\nshape = \"floor\"\n", "`collider[0].shape`", ""),
+        (
+            "[[region]]\nmaterial = 'glass'\nshape = { polygon = [[0, 0], [1, 0], [0, 1]], holes = [] }\n",
+            "is a table of `holes`, `polygon`, but it takes one of",
+            "`holes` is a key of `polygon`",
+        ),
         ("[[collider]]\nshape = { }\n", "one of `{ half_plane = ... }`", ""),
         ("[[collider]]\nshape = { disc = 1 }\n", "a table of keys", ""),
         ("[[collider]]\nshape = { disc = { radius = 1 }, box = 2 }\n", "one of `{ half_plane = ... }`", ""),

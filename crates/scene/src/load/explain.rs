@@ -68,8 +68,18 @@ pub(super) fn explain(message: &str, path: &mut KeyPath, file: &Value) -> (Strin
         let words = description(&meant);
         meant.0.pop().map(|_| words)
     });
-    let remedy = described.flatten().next();
+    let remedy = written.and_then(|written| deeper(path, written)).or_else(|| described.flatten().next());
     (told, remedy.unwrap_or_else(|| "see `fissure schema` for what each key holds".into()))
+}
+
+/// Where a key belongs that stands beside the one it should be in: `holes` beside `polygon`.
+fn deeper(path: &KeyPath, written: &Value) -> Option<String> {
+    let keys: Vec<&String> = written.as_table()?.keys().collect();
+    let is_key = |of: &[&str]| find(&SCHEMA, &of.iter().fold(path.clone(), |path, key| path.then(*key))).is_some();
+    keys.iter().filter(|key| !is_key(&[key.as_str()])).find_map(|key| {
+        let owner = keys.iter().find(|owner| is_key(&[owner.as_str(), key.as_str()]))?;
+        Some(format!("`{key}` is a key of `{owner}`: write `{{ {owner} = {{ {key} = ..., ... }} }}`"))
+    })
 }
 
 /// The complaint about a top-level key that is no list of tables.
@@ -139,7 +149,11 @@ fn wanted(message: &str) -> Option<String> {
 fn show(value: &Value) -> String {
     const MOST: usize = 40;
     let text = match value {
-        Value::Table(_) => return "a table".into(),
+        Value::Table(keys) if keys.is_empty() => return "a table".into(),
+        Value::Table(keys) => {
+            let keys: Vec<String> = keys.keys().map(|key| format!("`{key}`")).collect();
+            return format!("a table of {}", keys.join(", "));
+        }
         Value::Array(items) if items.iter().any(|item| matches!(item, Value::Table(_))) => {
             return format!("a list of {} items", items.len());
         }
