@@ -21,7 +21,7 @@ const SHARP: f64 = 60.0;
 const MOST_EDGES: usize = 64;
 
 /// Ends sharp corners bluntly where their sides are `least` grid steps apart. `sources` receives the edges across.
-/// Corners of outlines stay, and those of cracks where polygons may hardly grow. Tells whether there were any.
+/// Corners that were drawn stay, and those of cracks where polygons may hardly grow. Tells whether there were any.
 pub(crate) fn blunt_needles(shapes: &mut [Shape], least: f64, growth: Growth, sources: &mut Vec<SourceEdge>) -> bool {
     let mut any = false;
     for shape in 0..shapes.len() {
@@ -58,14 +58,12 @@ fn needle(contour: &Contour, corner: usize, least: f64, growth: Growth, sources:
     let next = (corner + 1) % count;
     let (one, two) = (&contour[corner], &contour[next]);
     let (back, forth) = (way(one.b, one.a), way(two.a, two.b));
-    let turn = back.0 * forth.1 - back.1 * forth.0;
-    if turn.atan2(back.0 * forth.0 + back.1 * forth.1).abs() >= SHARP.to_radians() {
+    if !is_sharp(back, forth) {
         return None;
     }
     // Going on to the left of the way back encloses nothing: the corner of a crack.
-    let is_crack = turn > 0.0;
-    let is_outline = |edge: &Edge| sources[edge.source.0 as usize].slot == Slot::Outside;
-    if (is_crack && growth == Growth::Hardly) || (is_outline(one) && is_outline(two)) {
+    let is_crack = back.0 * forth.1 - back.1 * forth.0 > 0.0;
+    if (is_crack && growth == Growth::Hardly) || is_drawn(one, two, sources) {
         return None;
     }
     let edge = |k: usize, is_back: bool| {
@@ -114,6 +112,21 @@ fn needle(contour: &Contour, corner: usize, least: f64, growth: Growth, sources:
         }
         (reached, places) = (to, ahead);
     }
+}
+
+/// Whether there is a sharp corner between two ways from one place.
+fn is_sharp(one: (f64, f64), two: (f64, f64)) -> bool {
+    let (sin, cos) = (one.0 * two.1 - one.1 * two.0, one.0 * two.0 + one.1 * two.1);
+    sin.atan2(cos).abs() < SHARP.to_radians()
+}
+
+/// Whether the corner between two edges was drawn as sharp. Outlines are folded where the corner between them and a
+/// crack is pushed along them.
+fn is_drawn(one: &Edge, two: &Edge, sources: &[SourceEdge]) -> bool {
+    let at = |edge: &Edge, point| sources[edge.source.0 as usize].at(point).rest;
+    let (back, forth) = (at(one, one.a) - at(one, one.b), at(two, two.b) - at(two, two.a));
+    let is_outline = |edge: &Edge| sources[edge.source.0 as usize].slot == Slot::Outside;
+    is_outline(one) && is_outline(two) && is_sharp((back.x, back.y), (forth.x, forth.y))
 }
 
 impl Needle {
@@ -371,6 +384,13 @@ mod tests {
                 blunt_needles(&mut kept, least, growth, &mut sources);
                 prop_assert!(kept == whole || (slot == Slot::Inside && !is_crack));
             }
+            // Outlines that were straight at rest are folded, not drawn.
+            let (mut folded, mut sources) = shapes(&ring, Slot::Outside);
+            for (source, along) in sources.iter_mut().zip(0_u32..) {
+                source.carried = [along, along + 1].map(|x| Carried::within(Point::new(f64::from(x), 0.0), Vector::zeros()));
+            }
+            blunt_needles(&mut folded, least, Growth::Allowed, &mut sources);
+            prop_assert_eq!(area(&folded), area(&blunt));
         }
     }
 }
