@@ -380,6 +380,21 @@ fn a_crack_runs_through_several_bodies() {
     assert_eq!((only.cracks.len(), only.cracks[0].body, only.cracks[0].name.as_str()), (1, 0, "crack-1"));
 }
 
+/// Truth: the drawing, with a guide that begins 1 m beside another one, and one that begins on it.
+#[test]
+fn guides_that_nothing_follows_are_told_of() {
+    let text = "[[body]]\nname = 'plate'\nmaterial = 'pmma'\nshape = { rectangle = { min = [-10, -10], max = [10, 10] } }\n\
+        [grid]\nparticle_spacing = 0.25\n\
+        [[crack]]\nline = [[-10, 0], [-5, 0]]\nguide = 'trunk'\n\
+        [[guide]]\nname = 'trunk'\nline = [[-5, 0], [8, 0]]\n\
+        [[guide]]\nname = 'side'\nline = [[2, 1], [4, 3]]\n\
+        [[guide]]\nname = 'twig'\nline = [[4, 0], [6, 3]]\n";
+    let loaded = load_with_warnings(&Folder::new(text, None).path(), &[]).unwrap();
+    let told: Vec<_> = loaded.warnings.iter().filter(|w| w.message.contains("no crack follows")).collect();
+    assert_eq!(told.len(), 1);
+    assert!(told[0].message.contains("`side`: it ends 1 m from the nearest one, `trunk`"), "{}", told[0].message);
+}
+
 /// Truth: the construction, two plates of 10 mm joined by a neck of 0.4 mm at a spacing of 1 mm.
 #[test]
 fn a_narrow_neck_is_warned_of_with_its_line() {

@@ -5,7 +5,7 @@ use super::settings::in_seconds;
 use super::{Resolved, Resolver};
 use crate::curve::Curve;
 use crate::document::{CrackKeys, GuideKeys};
-use crate::fault::{KeyPath, SceneFault, short};
+use crate::fault::{KeyPath, SceneFault, Warning, short};
 use crate::frame::End;
 use crate::load::nearest::nearest;
 use crate::load::seating::{fit_guide, nearest_on_polyline};
@@ -241,10 +241,15 @@ impl Resolver<'_> {
         Err(SceneFault::new(KeyPath::item("guide", k).then("line"), message, remedy))
     }
 
-    /// That every guide that is called a branch has become one.
+    /// That every guide that is called a branch has become one; tells of others that nothing follows.
     pub(super) fn check_branches(&self, guides: &DrawnGuides) -> Resolved<()> {
         for (k, keys) in self.document.guide.iter().enumerate() {
-            let Some(trunk) = &keys.branch_of else { continue };
+            let Some(trunk) = &keys.branch_of else {
+                if !guides.used[k] {
+                    self.warn_of_idle(k, guides);
+                }
+                continue;
+            };
             let path = KeyPath::item("guide", k).then("branch_of");
             let followed = self.document.crack.iter().find(|c| names(c).any(|name| *name == keys.name));
             if followed.is_some() {
@@ -258,6 +263,38 @@ impl Resolver<'_> {
             }
         }
         Ok(())
+    }
+}
+
+impl Resolver<'_> {
+    /// Tells of guide `k`, which nothing follows, and how near to another one it is.
+    fn warn_of_idle(&self, k: usize, guides: &DrawnGuides) {
+        let keys = &self.document.guide;
+        let ends = || [guides.lines[k].first(), guides.lines[k].last()].into_iter().flatten();
+        let others = (0..keys.len()).filter(|&other| other != k && guides.lines[other].len() > 1);
+        let nearest = others
+            .flat_map(|other| ends().map(move |end| (other, nearest_on_polyline(&guides.lines[other], *end).1 - end)))
+            .map(|(other, way)| (other, way.norm()))
+            .min_by(|a, b| a.1.total_cmp(&b.1));
+        let name = &keys[k].name;
+        let (message, remedy) = match nearest {
+            Some((other, distance)) if distance > guides.reach => (
+                format!(
+                    "no crack follows guide `{name}`: it ends {} m from the nearest one, `{}`",
+                    short(distance),
+                    keys[other].name
+                ),
+                format!(
+                    "draw one of its ends on that one, within {} m, to make it a branch, or name it as `guide` of a crack",
+                    short(guides.reach)
+                ),
+            ),
+            _ => (
+                format!("no crack follows guide `{name}`"),
+                "name it as `guide` of a crack, or take it away".to_owned(),
+            ),
+        };
+        self.warn(Warning::new(KeyPath::item("guide", k).then("line"), message, remedy));
     }
 }
 
