@@ -152,7 +152,7 @@ fn show(value: &Value) -> String {
         Value::Table(keys) if keys.is_empty() => return "a table".into(),
         Value::Table(keys) => {
             let keys: Vec<String> = keys.keys().map(|key| format!("`{key}`")).collect();
-            return format!("a table of {}", keys.join(", "));
+            format!("a table of {}", keys.join(", "))
         }
         Value::Array(items) if items.iter().any(|item| matches!(item, Value::Table(_))) => {
             return format!("a list of {} items", items.len());
