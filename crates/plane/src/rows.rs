@@ -11,7 +11,10 @@ pub struct RingRows {
     low: Point,
     high: Point,
     height: f64,
-    rows: Vec<Vec<[Point; 2]>>,
+    /// The edges of each row, row after row.
+    edges: Vec<[Point; 2]>,
+    /// Where the edges of each row begin, and where those of the last one end.
+    begins: Vec<usize>,
 }
 
 impl RingRows {
@@ -22,26 +25,39 @@ impl RingRows {
         let starts: Vec<Point> = edges.iter().map(|edge| edge[0]).collect();
         let (low, high) = bounds(&starts);
         let count = edges.len().clamp(1, MOST_ROWS);
-        let mut rows = Self { low, high, height: (high.y - low.y) / count as f64, rows: vec![Vec::new(); count] };
+        let height = (high.y - low.y) / count as f64;
+        let mut rows = Self { low, high, height, edges: Vec::new(), begins: vec![0; count + 1] };
+        let of_edge = |rows: &Self, [a, b]: [Point; 2]| rows.row(a.y.min(b.y))..=rows.row(a.y.max(b.y));
+        for &edge in &edges {
+            of_edge(&rows, edge).for_each(|row| rows.begins[row + 1] += 1);
+        }
+        (0..count).for_each(|row| rows.begins[row + 1] += rows.begins[row]);
+        let mut free = rows.begins.clone();
+        let mut sorted = vec![[low; 2]; rows.begins[count]];
         for edge in edges {
-            let [a, b] = edge.map(|p| p.y);
-            for row in rows.row(a.min(b))..=rows.row(a.max(b)) {
-                rows.rows[row].push(edge);
+            for row in of_edge(&rows, edge) {
+                sorted[free[row]] = edge;
+                free[row] += 1;
             }
         }
-        rows
+        Self { edges: sorted, ..rows }
     }
 
     fn row(&self, y: f64) -> usize {
-        (((y - self.low.y) / self.height) as usize).min(self.rows.len() - 1)
+        (((y - self.low.y) / self.height) as usize).min(self.begins.len() - 2)
     }
 
     /// Whether `point` lies inside, as [`Region::contains`](crate::Region::contains) says of the same rings. An edge
     /// that runs to and fro counts for nothing.
     pub fn contains(&self, point: Point) -> bool {
-        let is_in_box = point >= self.low && point <= self.high;
-        is_in_box
-            && self.rows[self.row(point.y)].iter().fold(false, |inside, &[a, b]| inside != is_left_of(a, b, point))
+        let Self { low, high, .. } = self;
+        let is_in_box = point.x >= low.x && point.y >= low.y && point.x <= high.x && point.y <= high.y;
+        if !is_in_box {
+            return false;
+        }
+        let row = self.row(point.y);
+        let edges = &self.edges[self.begins[row]..self.begins[row + 1]];
+        edges.iter().fold(false, |inside, &[a, b]| inside != is_left_of(a, b, point))
     }
 }
 

@@ -5,6 +5,8 @@ use crate::snap::GridPoint;
 use crate::source::Carried;
 use crate::triangulate::Cap;
 use fissure_scene::{Cut, Frame, Point, Vector};
+use rustc_hash::FxHashMap;
+use std::ops::Range;
 
 /// Width of a bin, in particle spacings: the nearest particle of most places lies in their bin or in one beside it,
 /// unless the material has stretched to twice its length.
@@ -14,18 +16,26 @@ const BIN: f64 = 2.0;
 #[derive(Debug)]
 pub(crate) struct Interior<'a> {
     frame: &'a Frame,
-    bin: f64,
     /// By where they are now.
-    now: Vec<Binned>,
+    now: Bins,
     /// By where they are at rest, if that is needed.
-    rest: Vec<Binned>,
+    rest: Bins,
 }
 
-/// A particle in its bin: what a search looks at lies side by side.
+/// Particles by place.
+#[derive(Debug, Default)]
+struct Bins {
+    /// Width of a bin [m].
+    width: f64,
+    /// Bin after bin; what a search looks at lies side by side.
+    particles: Vec<Binned>,
+    /// The particles of each bin that holds some, by its column and row.
+    ranges: FxHashMap<[i32; 2], Range<usize>>,
+}
+
+/// A particle in its bin.
 #[derive(Debug, Clone, Copy)]
 struct Binned {
-    /// Column and row of the bin.
-    bin: [i32; 2],
     particle: u32,
     piece: u32,
     place: Point,
@@ -34,10 +44,9 @@ struct Binned {
 impl<'a> Interior<'a> {
     /// Those of body `body`, to be found as `cut` needs them; `spacing` [m] is their distance at rest.
     pub(crate) fn new(frame: &'a Frame, body: u32, spacing: f64, cut: Cut) -> Self {
-        let bin = BIN * spacing;
-        let binned = |places| binned(frame, body, places, bin);
-        let rest = if cut == Cut::Rest { binned(&frame.particles.rest) } else { Vec::new() };
-        Self { frame, bin, now: binned(&frame.particles.position), rest }
+        let bins = |places| Bins::new(frame, body, places, BIN * spacing);
+        let rest = if cut == Cut::Rest { bins(&frame.particles.rest) } else { Bins::default() };
+        Self { frame, now: bins(&frame.particles.position), rest }
     }
 
     /// What the corners within a polygon of fragment `piece` carry; where no particle is near, one has moved as the
@@ -66,7 +75,7 @@ impl<'a> Interior<'a> {
     /// its particles sees it: X = X_p + F_p⁻¹ (x − x_p). None where none of them is near.
     pub(crate) fn at(&self, place: Point, piece: u32) -> Option<(Point, Vector)> {
         let particles = &self.frame.particles;
-        let p = nearest(&self.now, self.bin, place, piece)?;
+        let p = self.now.nearest(place, piece)?;
         let back = particles.deformation_gradient[p].try_inverse()?;
         Some((particles.rest[p] + back * (place - particles.position[p]), particles.velocity[p]))
     }
@@ -75,43 +84,58 @@ impl<'a> Interior<'a> {
     /// nearest of its particles sees it: x = x_p + F_p (X − X_p). None where none of them is near.
     pub(crate) fn moved(&self, rest: Point, piece: u32) -> Option<(Point, Vector)> {
         let particles = &self.frame.particles;
-        let p = nearest(&self.rest, self.bin, rest, piece)?;
+        let p = self.rest.nearest(rest, piece)?;
         let way = particles.deformation_gradient[p] * (rest - particles.rest[p]);
         Some((particles.position[p] + way, particles.velocity[p]))
     }
 }
 
-/// The particle of fragment `piece`, of those in bins of width `bin` [m], whose place is nearest to `place`.
-fn nearest(sorted: &[Binned], bin: f64, place: Point, piece: u32) -> Option<usize> {
-    let [column, row] = bin_of(place, bin);
-    let mut nearest: Option<(f64, u32)> = None;
-    for column in column.saturating_sub(1)..=column.saturating_add(1) {
-        let (low, high) = ([column, row.saturating_sub(1)], [column, row.saturating_add(1)]);
-        let begin = sorted.partition_point(|binned| binned.bin < low);
-        let near = sorted[begin..].iter().take_while(|binned| binned.bin <= high);
-        for binned in near.filter(|binned| binned.piece == piece) {
-            let distance = (binned.place - place).norm_squared();
-            if nearest.is_none_or(|(least, _)| distance < least) {
-                nearest = Some((distance, binned.particle));
+impl Bins {
+    /// The particles of a body in bins of some `width` [m], each by its place among `places`.
+    fn new(frame: &Frame, body: u32, places: &[Point], width: f64) -> Self {
+        let particles = &frame.particles;
+        let of_body: Vec<usize> = (0..places.len()).filter(|&p| particles.body[p] == body).collect();
+        let mut ranges = FxHashMap::<[i32; 2], Range<usize>>::default();
+        for &p in &of_body {
+            ranges.entry(bin_of(places[p], width)).or_default().end += 1;
+        }
+        let mut begin = 0;
+        for range in ranges.values_mut() {
+            let count = range.end;
+            *range = begin..begin;
+            begin += count;
+        }
+        let nothing = Binned { particle: 0, piece: 0, place: Point::origin() };
+        let mut sorted = vec![nothing; of_body.len()];
+        for p in of_body {
+            if let Some(range) = ranges.get_mut(&bin_of(places[p], width)) {
+                sorted[range.end] = Binned { particle: p as u32, piece: particles.piece[p], place: places[p] };
+                range.end += 1;
             }
         }
+        Self { width, particles: sorted, ranges }
     }
-    nearest.map(|(_, particle)| particle as usize)
-}
 
-fn binned(frame: &Frame, body: u32, places: &[Point], bin: f64) -> Vec<Binned> {
-    let particles = &frame.particles;
-    let of_body = (0..places.len()).filter(|&p| particles.body[p] == body);
-    let mut order: Vec<([i32; 2], u32)> = of_body.map(|p| (bin_of(places[p], bin), p as u32)).collect();
-    order.sort_unstable();
-    let binned = |(bin, particle)| {
-        let p = particle as usize;
-        Binned { bin, particle, piece: particles.piece[p], place: places[p] }
-    };
-    order.into_iter().map(binned).collect()
+    /// The particle of fragment `piece` nearest to `place`, of those in its bin and in those around it; of several the
+    /// one in the first column, the first row and with the lowest number.
+    fn nearest(&self, place: Point, piece: u32) -> Option<usize> {
+        let [column, row] = bin_of(place, self.width);
+        let around = |x: i32| x.saturating_sub(1)..=x.saturating_add(1);
+        let mut nearest: Option<(f64, u32)> = None;
+        for bin in around(column).flat_map(|column| around(row).map(move |row| [column, row])) {
+            let Some(range) = self.ranges.get(&bin) else { continue };
+            for binned in self.particles[range.clone()].iter().filter(|binned| binned.piece == piece) {
+                let distance = (binned.place - place).norm_squared();
+                if nearest.is_none_or(|(least, _)| distance < least) {
+                    nearest = Some((distance, binned.particle));
+                }
+            }
+        }
+        nearest.map(|(_, particle)| particle as usize)
+    }
 }
 
 /// Column and row of the bin that holds `place`; far away ones are all in the last.
-fn bin_of(place: Point, bin: f64) -> [i32; 2] {
-    [place.x, place.y].map(|x| (x / bin).floor() as i32)
+fn bin_of(place: Point, width: f64) -> [i32; 2] {
+    [place.x, place.y].map(|x| (x / width).floor() as i32)
 }

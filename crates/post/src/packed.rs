@@ -54,7 +54,7 @@ pub(crate) fn compact(
     convention: Convention,
 ) -> (Vec<PackedVertex>, Vec<[u32; 3]>) {
     let mut new_index = vec![u32::MAX; mesh.vertices.len()];
-    let mut vertices = Vec::new();
+    let mut vertices = Vec::with_capacity(mesh.vertices.len().min(3 * triangles.len()));
     let mut renumbered = |old: u32| {
         let new = &mut new_index[old as usize];
         if *new == u32::MAX {

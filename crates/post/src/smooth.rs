@@ -1,6 +1,6 @@
 //! Paths of cracks, smoothed for the eye: tips that turn a little at every step leave a zigzag as wide as a cell.
 
-use fissure_plane::distance_to_segment;
+use fissure_plane::{bounds, distance_to_segment};
 use fissure_scene::{BranchKind, CrackFrame, Fragments, Frame, Guide, Line, Point, Scene, Vector};
 use std::borrow::Cow;
 
@@ -46,7 +46,8 @@ impl<'a> SmoothCracks<'a> {
         for (i, crack) in frame.cracks.iter().enumerate() {
             let rest = &crack.rest;
             let last = rest.len().saturating_sub(1);
-            let is_drawn = |p: Point| is_on(&lines, p, ON_LINE * scene.cell_size);
+            let near = near(&lines, rest, ON_LINE * scene.cell_size);
+            let is_drawn = |p: Point| is_on(&near, p, ON_LINE * scene.cell_size);
             let is_joint = |k: usize| (k > 0 && rest[k - 1] == rest[k]) || (k < last && rest[k + 1] == rest[k]);
             let is_fixed: Vec<bool> = (0..rest.len())
                 .map(|k| k == 0 || k == last || is_crossed[i][k] || is_joint(k) || is_drawn(rest[k]))
@@ -78,6 +79,17 @@ fn drawn_lines(scene: &Scene) -> Vec<&[Point]> {
         [&crack.start_guide, &crack.end_guide].into_iter().flatten().for_each(|guide| of_guide(guide, &mut lines));
     }
     lines
+}
+
+/// Those of some lines that `points` may lie on, `most` [m] off at most.
+fn near<'a>(lines: &[&'a [Point]], points: &[Point], most: f64) -> Vec<&'a [Point]> {
+    let (low, high) = bounds(points);
+    let is_near = |line: &&&[Point]| {
+        let (from, to) = bounds(line);
+        let beside = |k: usize| from[k] - 1.01 * most <= high[k] && low[k] <= to[k] + 1.01 * most;
+        beside(0) && beside(1)
+    };
+    lines.iter().filter(is_near).copied().collect()
 }
 
 /// Whether a point lies on one of some lines, `most` [m] off at most.
@@ -211,6 +223,8 @@ mod tests {
             let arc = 0.05 * f64::from(k);
             let on = Point::new(1.0 - (1.0 - arc).abs(), arc);
             assert!(is_on(&[&guide], on, 1e-9) && !is_on(&[&guide], on + Vector::new(0.1, 0.0), 0.05), "{on}");
+            let elsewhere = guide.map(|p| p + Vector::new(3.0, 0.0));
+            assert_eq!(near(&[&elsewhere, &guide], &[on], 1e-9), [&guide[..]], "{on}");
         }
         assert!(!is_on(&[], guide[0], 1.0));
     }

@@ -62,9 +62,15 @@ impl SourceEdge {
     pub(crate) fn turn(&self, point: GridPoint) -> Option<f64> {
         /// Chords are nearer to their curves; what takes the place of some of them may turn by more.
         const MOST: f64 = 0.6;
-        let (along, tangent) = (self.direction_at_rest()?, self.at(point).tangent);
-        let turn = along.perp(&tangent).atan2(along.dot(&tangent));
-        (self.slot == Slot::Outside && tangent != Vector::zeros() && turn.abs() <= MOST).then_some(turn)
+        if self.slot != Slot::Outside {
+            return None;
+        }
+        let tangent = self.at(point).tangent;
+        if tangent == Vector::zeros() {
+            return None;
+        }
+        let along = self.direction_at_rest()?;
+        Some(along.perp(&tangent).atan2(along.dot(&tangent))).filter(|turn| turn.abs() <= MOST)
     }
 
     /// What is carried at `point` on the edge: linear between the ends, exactly theirs at the ends.

@@ -130,15 +130,15 @@ impl Document {
     fn triangles(&mut self, mesh: &Mesh, slot: Slot) -> Primitive {
         let (vertices, triangles) = compact(mesh, mesh.slot(slot), self.convention);
         let mut attributes = self.common_attributes(&vertices);
-        let normals = vertices.iter().flat_map(|v| v.normal);
+        let normals = vertices.iter().map(|v| v.normal);
         let normals = self.floats(normals, vertices.len(), Type::Vec3);
         // Texture coordinates of the format count downwards.
-        let texture = vertices.iter().flat_map(|v| [v.texture[0], 1.0 - v.texture[1]]);
+        let texture = vertices.iter().map(|v| [v.texture[0], 1.0 - v.texture[1]]);
         let texture = self.floats(texture, vertices.len(), Type::Vec2);
         attributes.insert(Valid(Semantic::Normals), normals);
         attributes.insert(Valid(Semantic::TexCoords(0)), texture);
         if let Some(size) = mesh.texture_size {
-            let metres = vertices.iter().map(|v| v.metres(size)).flat_map(|[u, v]| [u, 1.0 - v]);
+            let metres = vertices.iter().map(|v| v.metres(size)).map(|[u, v]| [u, 1.0 - v]);
             let metres = self.floats(metres, vertices.len(), Type::Vec2);
             attributes.insert(Valid(Semantic::TexCoords(1)), metres);
         }
@@ -147,11 +147,11 @@ impl Document {
             let number = |history: &History, attribute: Attribute| {
                 if mesh.attributes.contains(&attribute) { history.number(attribute) } else { 0.0 }
             };
-            let crack = vertices.iter().flat_map(|v| Attribute::ALL.map(|attribute| number(&v.history, attribute)));
+            let crack = vertices.iter().map(|v| Attribute::ALL.map(|attribute| number(&v.history, attribute)));
             let crack = self.floats(crack, vertices.len(), Type::Vec3);
             attributes.insert(Valid(Semantic::Extras("CRACK".to_owned())), crack);
         }
-        let indices = triangles.iter().flatten().map(|i| i.to_le_bytes());
+        let indices = triangles.iter().map(|triangle| triangle.map(u32::to_le_bytes));
         let target = Some(Target::ElementArrayBuffer);
         let indices = self.accessor(indices, 3 * triangles.len(), Type::Scalar, ComponentType::U32, target);
         let material = self.material(slot);
@@ -161,7 +161,7 @@ impl Document {
     /// Attributes that triangles and points have.
     fn common_attributes(&mut self, vertices: &[PackedVertex]) -> Attributes {
         let mut attributes = Attributes::new();
-        let positions = self.floats(vertices.iter().flat_map(|v| v.position), vertices.len(), Type::Vec3);
+        let positions = self.floats(vertices.iter().map(|v| v.position), vertices.len(), Type::Vec3);
         let bound = |pick: fn(f32, f32) -> f32, start: f32| {
             let all = vertices.iter().fold([start; 3], |b, v| std::array::from_fn(|i| pick(b[i], v.position[i])));
             Some(Value::from(all.to_vec()))
@@ -171,13 +171,19 @@ impl Document {
             accessor.max = bound(f32::max, f32::NEG_INFINITY);
         }
         attributes.insert(Valid(Semantic::Positions), positions);
-        let velocity = self.floats(vertices.iter().flat_map(|v| v.velocity), vertices.len(), Type::Vec3);
+        let velocity = self.floats(vertices.iter().map(|v| v.velocity), vertices.len(), Type::Vec3);
         attributes.insert(Valid(Semantic::Extras("VELOCITY".to_owned())), velocity);
         attributes
     }
 
-    fn floats(&mut self, values: impl Iterator<Item = f32>, count: usize, kind: Type) -> Index<Accessor> {
-        self.accessor(values.map(f32::to_le_bytes), count, kind, ComponentType::F32, Some(Target::ArrayBuffer))
+    fn floats<const N: usize>(
+        &mut self,
+        values: impl Iterator<Item = [f32; N]>,
+        count: usize,
+        kind: Type,
+    ) -> Index<Accessor> {
+        let numbers = values.map(|values| values.map(f32::to_le_bytes));
+        self.accessor(numbers, count, kind, ComponentType::F32, Some(Target::ArrayBuffer))
     }
 
     /// Numbers of an animation: rising times, from the least to the greatest.
@@ -192,13 +198,13 @@ impl Document {
 
     /// Numbers of an animation: so many values of one kind.
     pub(super) fn keys(&mut self, values: &[f32], count: usize, kind: Type) -> Index<Accessor> {
-        self.accessor(values.iter().map(|value| value.to_le_bytes()), count, kind, ComponentType::F32, None)
+        self.accessor(values.iter().map(|value| [value.to_le_bytes()]), count, kind, ComponentType::F32, None)
     }
 
     /// Appends numbers with a view and an accessor of their own. All have four bytes, so all stay aligned.
-    fn accessor(
+    fn accessor<const N: usize>(
         &mut self,
-        numbers: impl Iterator<Item = [u8; 4]>,
+        numbers: impl Iterator<Item = [[u8; 4]; N]>,
         count: usize,
         kind: Type,
         component: ComponentType,
@@ -206,7 +212,7 @@ impl Document {
     ) -> Index<Accessor> {
         let begin = self.binary.len();
         self.binary.reserve(16 * count);
-        numbers.for_each(|number| self.binary.extend_from_slice(&number));
+        numbers.for_each(|numbers| self.binary.extend_from_slice(numbers.as_flattened()));
         let view = self.root.push(buffer::View {
             buffer: Index::new(0),
             byte_length: USize64::from(self.binary.len() - begin),

@@ -3,7 +3,7 @@
 use super::{Line, RestCrack, RestRing};
 use crate::frame::CrackEnd;
 use fissure_plane::{Point, nearest_on_segment, orientation};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 use std::ops::Range;
 
 /// Two places nearer to each other than this part of the extent of everything are one: half the digits of a number.
@@ -28,12 +28,12 @@ pub(super) struct Lines {
 }
 
 /// Vertices by body and the bits of their place.
-type Known = HashMap<(u32, [u64; 2]), usize>;
+type Known = FxHashMap<(u32, [u64; 2]), usize>;
 
 impl Lines {
     pub(super) fn new(rings: &[RestRing<'_>], cracks: &[RestCrack<'_>]) -> Self {
         let mut lines = Self::default();
-        let mut known = Known::new();
+        let mut known = Known::default();
         for (i, ring) in rings.iter().enumerate() {
             let count = ring.points.len();
             let pairs = (0..count).map(|k| [k, (k + 1) % count]);
@@ -139,16 +139,24 @@ impl Lines {
 
     /// Makes vertices of the places where two cracks of a body cross within a segment of each.
     fn cut_where_cracks_cross(&mut self) {
-        let mut order: Vec<usize> =
-            (0..self.segments.len()).filter(|&s| matches!(self.segments[s].line, Line::Above(_))).collect();
-        let low = |s: usize| self.ends(s)[0].inf(&self.ends(s)[1]);
-        let high = |s: usize| self.ends(s)[0].sup(&self.ends(s)[1]);
-        order.sort_by(|&s, &t| low(s).x.total_cmp(&low(t).x));
+        /// A segment and the box around it.
+        struct Boxed {
+            segment: usize,
+            low: Point,
+            high: Point,
+        }
+        let of_cracks = (0..self.segments.len()).filter(|&s| matches!(self.segments[s].line, Line::Above(_)));
+        let boxed = |segment| {
+            let [a, b] = self.ends(segment);
+            Boxed { segment, low: a.inf(&b), high: a.sup(&b) }
+        };
+        let mut order: Vec<Boxed> = of_cracks.map(boxed).collect();
+        order.sort_by(|one, other| one.low.x.total_cmp(&other.low.x));
         let mut crossings = Vec::new();
-        for (k, &s) in order.iter().enumerate() {
-            let (from, to) = (low(s), high(s));
-            for &t in order[k + 1..].iter().take_while(|&&t| low(t).x <= to.x) {
-                let is_near = low(t).y <= to.y && high(t).y >= from.y;
+        for (k, one) in order.iter().enumerate() {
+            for other in order[k + 1..].iter().take_while(|other| other.low.x <= one.high.x) {
+                let (s, t) = (one.segment, other.segment);
+                let is_near = other.low.y <= one.high.y && other.high.y >= one.low.y;
                 if is_near && self.can_cross(s, t) {
                     crossings.extend(crossing(self.ends(s), self.ends(t)).map(|parts| ([s, t], parts)));
                 }

@@ -87,8 +87,10 @@ impl<'a> From<&'a CrackFrame> for RestCrack<'a> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fragments {
     list: Vec<Fragment>,
-    /// What the outer boundary of each contains, and its area [m²].
-    insides: Vec<(RingRows, f64)>,
+    /// What the outer boundary of each contains.
+    insides: Vec<RingRows>,
+    /// The fragments of each body, the smallest first.
+    of_body: BTreeMap<u32, Vec<usize>>,
 }
 
 impl Fragments {
@@ -98,9 +100,13 @@ impl Fragments {
     /// A crack that says that it ends on a ring or a crack that does not pass there is led to the nearest place of it;
     /// one that ends on a crack that is not among `cracks` ends in the material.
     pub fn new(rings: &[RestRing<'_>], cracks: &[RestCrack<'_>]) -> Self {
-        let list = walk::fragments(&Lines::new(rings, cracks));
-        let insides = list.iter().map(|fragment| inside(&fragment.boundaries[0])).collect();
-        Self { list, insides }
+        let (list, insides) = walk::fragments(&Lines::new(rings, cracks));
+        let mut of_body = BTreeMap::<u32, Vec<usize>>::new();
+        for (i, fragment) in list.iter().enumerate() {
+            of_body.entry(fragment.body).or_default().push(i);
+        }
+        of_body.values_mut().for_each(|own| own.sort_by(|&i, &j| insides[i].1.total_cmp(&insides[j].1)));
+        Self { list, insides: insides.into_iter().map(|(rows, _)| rows).collect(), of_body }
     }
 
     /// The fragments of a frame; lines are known by their place in its lists.
@@ -119,12 +125,10 @@ impl Fragments {
     /// The fragment of `body` that holds `place` at rest: of several around it, the smallest. A place on a crack
     /// belongs to one side of it.
     pub fn at(&self, body: u32, place: Point) -> Option<usize> {
-        let of_body = || (0..self.list.len()).filter(|&i| self.list[i].body == body);
-        if of_body().nth(1).is_none() {
-            return of_body().next();
+        match self.of_body.get(&body)?.as_slice() {
+            &[only] => Some(only),
+            own => own.iter().copied().find(|&i| self.insides[i].contains(place)),
         }
-        let around = of_body().filter(|&i| self.insides[i].0.contains(place));
-        around.min_by(|&i, &j| self.insides[i].1.total_cmp(&self.insides[j].1))
     }
 
     /// The number of each fragment in the simulation: that of most of the particles in it at rest, of equally many the

@@ -2,7 +2,7 @@
 
 use super::lines::Lines;
 use super::{Boundary, BoundaryEdge, Fragment, Line, inside};
-use fissure_plane::{Point, orientation};
+use fissure_plane::{Point, RingRows, orientation};
 use std::cmp::Ordering;
 
 /// An edge with the vertices it joins, and the one that runs the other way on the other side of the crack.
@@ -25,8 +25,8 @@ struct Loop {
     component: usize,
 }
 
-/// The fragments that `lines` bound.
-pub(super) fn fragments(lines: &Lines) -> Vec<Fragment> {
+/// The fragments that `lines` bound, and what the outer boundary of each contains with its area [m²].
+pub(super) fn fragments(lines: &Lines) -> (Vec<Fragment>, Vec<(RingRows, f64)>) {
     let ways = ways(lines);
     let loops = loops(lines, &ways);
     let mut order: Vec<usize> = (0..loops.len()).collect();
@@ -51,7 +51,7 @@ pub(super) fn fragments(lines: &Lines) -> Vec<Fragment> {
             found[k].boundaries.push(hole.boundary.clone());
         }
     }
-    found
+    (found, insides)
 }
 
 fn ways(lines: &Lines) -> Vec<Way> {
