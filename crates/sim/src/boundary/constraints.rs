@@ -14,7 +14,7 @@
 use super::edges::EdgeMean;
 use super::supports::contradiction;
 use fissure_scene::Support;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A mean of velocities along one axis that is prescribed.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,6 +34,19 @@ pub(crate) struct Held {
     pub(crate) fields: Vec<u32>,
 }
 
+/// How fields answer impulses.
+pub(crate) trait Inertia {
+    /// Tells of each field that an impulse on `field` moves, itself among them, by how much one of 1 does [m/kg].
+    fn response(&self, field: u32, each: &mut dyn FnMut(u32, f64));
+}
+
+/// Inverse masses of fields [m/kg], each of which moves by itself.
+impl Inertia for [f64] {
+    fn response(&self, field: u32, each: &mut dyn FnMut(u32, f64)) {
+        each(field, self[field as usize]);
+    }
+}
+
 /// The part ε by which the diagonal is raised. Rounding is 1e-8 of that.
 const RAISED: f64 = 1e-8;
 /// The rounds in which all is held.
@@ -46,8 +59,10 @@ pub(crate) struct ConstraintSystem {
     fixed: Vec<Constraint>,
     /// The others. Fields that are fixed stand in them as if they had no end of mass.
     means: Vec<Constraint>,
-    /// Change of velocity of each entry of each of the means by an impulse of 1 [m/kg].
-    responses: Vec<Vec<f64>>,
+    /// What an impulse of 1 on each of the means moves, by how much [m/kg].
+    responses: Vec<Vec<(u32, f64)>>,
+    /// Sum of the weights of each of the means on fields that are not fixed.
+    parts: Vec<f64>,
     /// ε D of each of the means [1/kg].
     raised: Vec<f64>,
     /// Cholesky factor of the means, row by row.
@@ -73,32 +88,54 @@ impl EnvelopeRow {
 }
 
 impl ConstraintSystem {
-    /// Prepares `constraints` for fields of these inverse masses [m/kg]. Of several of the same single field the first
-    /// one is kept; other constraints that say the same share what it takes.
-    pub(crate) fn new(constraints: Vec<Constraint>, inverse_mass: &[f64]) -> Self {
+    /// Prepares `constraints` for fields of this `inertia`. Of several of the same single field the first one is kept;
+    /// other constraints that say the same share what it takes.
+    pub(crate) fn new(constraints: Vec<Constraint>, inertia: &(impl Inertia + ?Sized)) -> Self {
         let mut system = Self::default();
+        let singles: BTreeSet<u32> =
+            constraints.iter().filter(|c| c.entries.len() == 1).map(|c| c.entries[0].0).collect();
+        // What moves others that are not held is held as a mean is: they feel how it is.
+        let stands_alone = |field: u32| {
+            let mut alone = true;
+            inertia.response(field, &mut |other, _| alone &= singles.contains(&other));
+            alone
+        };
         let mut is_fixed = BTreeMap::new();
-        for constraint in constraints.iter().filter(|c| c.entries.len() == 1) {
-            if is_fixed.insert(constraint.entries[0].0, ()).is_none() {
-                system.fixed.push(constraint.clone());
+        let mut means = Vec::new();
+        for constraint in constraints {
+            match constraint.entries[..] {
+                [(field, _)] if is_fixed.contains_key(&field) => (),
+                [(field, _)] => {
+                    let alone = stands_alone(field);
+                    is_fixed.insert(field, alone);
+                    if alone { system.fixed.push(constraint) } else { means.push(constraint) }
+                }
+                _ => means.push(constraint),
             }
         }
+        is_fixed.retain(|_, alone| *alone);
         let mut of_field: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
-        for constraint in constraints.into_iter().filter(|c| c.entries.len() > 1) {
-            let response = |&(field, w): &(u32, f64)| {
-                if is_fixed.contains_key(&field) { 0.0 } else { w * inverse_mass[field as usize] }
-            };
-            let responses: Vec<f64> = constraint.entries.iter().map(response).collect();
-            let own: f64 = constraint.entries.iter().zip(&responses).map(|((_, w), response)| w * response).sum();
+        for constraint in means {
+            let free = || constraint.entries.iter().filter(|(field, _)| !is_fixed.contains_key(field));
+            let mut responses: Vec<(u32, f64)> = Vec::with_capacity(constraint.entries.len());
+            for &(field, w) in free() {
+                inertia.response(field, &mut |moved, response| match responses.iter_mut().find(|(f, _)| *f == moved) {
+                    Some((_, sum)) => *sum += w * response,
+                    None => responses.push((moved, w * response)),
+                });
+            }
+            let response = |field: u32| responses.iter().find(|(f, _)| *f == field).map_or(0.0, |&(_, r)| r);
+            let own: f64 = constraint.entries.iter().map(|&(field, w)| w * response(field)).sum();
             // Fields that are fixed, all of them: there is nothing to hold.
             if own <= 0.0 {
                 continue;
             }
-            let row = system.row(&constraint, &responses, own, &of_field);
+            let row = system.row(&responses, own, &of_field);
             for &(field, _) in &constraint.entries {
                 of_field.entry(field).or_default().push(system.means.len());
             }
             system.rows.push(row);
+            system.parts.push(free().map(|(_, w)| w).sum());
             system.means.push(constraint);
             system.responses.push(responses);
             system.raised.push(RAISED * own);
@@ -106,21 +143,15 @@ impl ConstraintSystem {
         system
     }
 
-    /// The row of one more constraint, with its `own` entry on the diagonal of G. `of_field`: which of those before
-    /// have each field.
-    fn row(
-        &self,
-        constraint: &Constraint,
-        responses: &[f64],
-        own: f64,
-        of_field: &BTreeMap<u32, Vec<usize>>,
-    ) -> EnvelopeRow {
+    /// The row of one more constraint of these `responses`, with its `own` entry on the diagonal of G. `of_field`:
+    /// which of those before have each field.
+    fn row(&self, responses: &[(u32, f64)], own: f64, of_field: &BTreeMap<u32, Vec<usize>>) -> EnvelopeRow {
         let count = self.means.len();
-        let tied = constraint.entries.iter().filter_map(|(field, _)| of_field.get(field)?.first());
+        let tied = responses.iter().filter_map(|(field, _)| of_field.get(field)?.first());
         let first = tied.min().copied().unwrap_or(count);
         // What an impulse of it does to the means before it.
         let mut x = vec![0.0; count];
-        for (&(field, _), response) in constraint.entries.iter().zip(responses) {
+        for &(field, response) in responses {
             for &other in of_field.get(&field).into_iter().flatten() {
                 let entry = self.means[other].entries.iter().find(|&&(f, _)| f == field);
                 x[other] += entry.map_or(0.0, |&(_, w)| w * response);
@@ -174,13 +205,12 @@ impl ConstraintSystem {
             self.solve(&mut left);
             impulses.iter_mut().zip(&left).for_each(|(impulse, left)| *impulse += left);
         }
-        for ((constraint, responses), &impulse) in self.means.iter().zip(&self.responses).zip(&impulses) {
-            // Of a field that is fixed nothing moves, and nothing acts on it.
-            let mut part = 0.0;
-            for (&(field, w), &response) in constraint.entries.iter().zip(responses) {
+        let means = self.means.iter().zip(&self.responses).zip(&self.parts);
+        for (((constraint, responses), part), &impulse) in means.zip(&impulses) {
+            for &(field, response) in responses {
                 velocity[field as usize] += impulse * response;
-                part += if response == 0.0 { 0.0 } else { w };
             }
+            // On a field that is fixed nothing acts.
             acted(constraint, impulse * part);
         }
     }
@@ -207,7 +237,11 @@ impl ConstraintSystem {
 }
 
 /// What is held along each axis. Where two supports want different velocities of a field, the later one has it.
-pub(crate) fn systems(supports: &[Support], of_support: &[Held], inverse_mass: &[f64]) -> [ConstraintSystem; 2] {
+pub(crate) fn systems(
+    supports: &[Support],
+    of_support: &[Held],
+    inertia: &(impl Inertia + ?Sized),
+) -> [ConstraintSystem; 2] {
     [0, 1].map(|axis| {
         let mut constraints = Vec::new();
         // The last supports that have each field.
@@ -234,7 +268,7 @@ pub(crate) fn systems(supports: &[Support], of_support: &[Held], inverse_mass: &
                 }
             }
         }
-        ConstraintSystem::new(constraints, inverse_mass)
+        ConstraintSystem::new(constraints, inertia)
     })
 }
 
@@ -265,7 +299,7 @@ mod tests {
                 constraints.push(Constraint { support: 0, entries: vec![(field, 1.0)] });
             }
             let inverse: Vec<f64> = masses.iter().map(|m| 1.0 / m).collect();
-            let system = ConstraintSystem::new(constraints.clone(), &inverse);
+            let system = ConstraintSystem::new(constraints.clone(), &inverse[..]);
             let mut after = before.clone();
             let mut momentum = 0.0;
             system.apply(|_| speed, &masses, &mut after, |_, impulse| momentum += impulse);

@@ -170,7 +170,7 @@ impl Total {
         Ok(Self {
             damping: scene.solver.damping,
             loads: Loads::new(scene, &lattice, cracks)?,
-            supports: Supports::new(scene, &lattice)?,
+            supports: Supports::new(scene, &lattice, &ties)?,
             colliders: Colliders::new(scene, &lattice),
             contacts: Contacts::new(friction, &lattice, cracks),
             touching: Touching::new(scene, impulses),
@@ -347,10 +347,10 @@ impl Solver for Total {
         let has_mouthed = self.probes.refresh(&self.lattice, cracks, changed, &boxes, &turned);
         let near = Near::new(&self.lattice, &boxes, shifts);
         self.loads.refresh(&near, &self.scene, &self.lattice, cracks);
-        self.supports.refresh(&near, &self.scene, &self.lattice);
         self.colliders.refresh(&near, &self.lattice);
         self.contacts.refresh(&near, &self.lattice, cracks);
-        self.ties.refresh(&near, &self.lattice, &self.motion, cracks);
+        let retied = self.ties.refresh(&near, &self.lattice, &self.motion, cracks);
+        self.supports.refresh(&near, &self.scene, &self.lattice, (&self.ties, &retied));
         self.touching.change(&near, has_mouthed);
         held - self.ties.held(&self.motion) + lost
     }
@@ -463,7 +463,8 @@ impl SlidingTips for Total {
     }
 
     fn slide(&mut self, cracks: &Cracks, id: TipId) {
-        self.ties.soften(&self.lattice, cracks, id);
+        let retied = self.ties.soften(&self.lattice, cracks, id);
+        self.supports.retie(&self.scene, &self.lattice, &self.ties, &retied);
         self.probes.move_last_faces(&self.lattice, cracks, id);
         self.loads.slide(id, &self.scene, &self.lattice, cracks);
     }

@@ -5,6 +5,7 @@ use super::held_points::HeldPoint;
 use super::lattice::Lattice;
 use super::motion::Motion;
 use super::near::Near;
+use super::ties::Ties;
 use crate::SimulationError;
 use crate::boundary::constraints::{ConstraintSystem, Held, systems};
 use crate::boundary::edges::{Chain, EdgeMean, edges_of};
@@ -32,7 +33,7 @@ impl Supports {
     ///
     /// # Errors
     /// When a support holds nothing.
-    pub(super) fn new(scene: &Scene, lattice: &Lattice) -> Result<Self, SimulationError> {
+    pub(super) fn new(scene: &Scene, lattice: &Lattice, ties: &Ties) -> Result<Self, SimulationError> {
         let bodies = body_of_fields(scene, lattice);
         let places = lattice.places_of_fields().map(|place| lattice.grid.place(place));
         let fields: Vec<(usize, Point)> = places.enumerate().collect();
@@ -61,19 +62,20 @@ impl Supports {
         };
         let held = scene.supports.iter().enumerate().map(held).collect::<Result<Vec<_>, SimulationError>>()?;
         let (of_support, points): (Vec<Held>, Vec<Vec<HeldPoint>>) = held.into_iter().unzip();
-        let systems = systems(&scene.supports, &of_support, &lattice.inverse_mass);
+        let systems = systems(&scene.supports, &of_support, &ties.inertia(&lattice.inverse_mass));
         let held = HeldFields::of(&systems);
         Ok(Self { of_support, chains, points, systems, held })
     }
 
-    /// The same after a change: what is elsewhere is held as before.
-    pub(super) fn refresh(&mut self, near: &Near, scene: &Scene, lattice: &Lattice) {
+    /// The same after a change: what is elsewhere is held as before. `retied`: fields to which ties give another
+    /// inertia than before.
+    pub(super) fn refresh(&mut self, near: &Near, scene: &Scene, lattice: &Lattice, (ties, retied): (&Ties, &[u32])) {
         if scene.supports.is_empty() {
             return;
         }
         let bodies = body_of_fields(scene, lattice);
         let fields = near.fields(lattice);
-        let mut has_changed = false;
+        let mut has_changed = self.held.holds_any(retied);
         let drawn = self.chains.iter().zip(&self.points);
         for ((held, (chains, points)), support) in self.of_support.iter_mut().zip(drawn).zip(&scene.supports) {
             if !points.is_empty() {
@@ -101,8 +103,15 @@ impl Supports {
             has_changed |= kept < before || kept < held.fields.len();
         }
         if has_changed {
-            self.systems = systems(&scene.supports, &self.of_support, &lattice.inverse_mass);
+            self.systems = systems(&scene.supports, &self.of_support, &ties.inertia(&lattice.inverse_mass));
             self.held = HeldFields::of(&self.systems);
+        }
+    }
+
+    /// The same when ties give the fields `retied` another inertia than before.
+    pub(super) fn retie(&mut self, scene: &Scene, lattice: &Lattice, ties: &Ties, retied: &[u32]) {
+        if self.held.holds_any(retied) {
+            self.systems = systems(&scene.supports, &self.of_support, &ties.inertia(&lattice.inverse_mass));
         }
     }
 
@@ -172,6 +181,11 @@ impl HeldFields {
         Self(held)
     }
 
+    /// Whether one of the fields is held.
+    fn holds_any(&self, fields: &[u32]) -> bool {
+        fields.iter().any(|&field| (0..2).any(|axis| self.holds(field, axis)))
+    }
+
     /// Whether a field is held along an axis.
     pub(super) fn holds(&self, field: u32, axis: usize) -> bool {
         self.0.binary_search(&(field, axis)).is_ok()
@@ -219,15 +233,17 @@ mod tests {
     use super::*;
     use crate::crack::cracks::Cracks;
     use crate::particles::Particles;
+    use crate::solver::Snapshot;
     use crate::test_scenes;
     use crate::total::Total;
-    use fissure_scene::{Formulation, Kernel, Region};
+    use fissure_scene::{Formulation, Kernel, Region, TipDivision};
     use proptest::prelude::*;
     use std::sync::Arc;
 
     /// A square of 12 cells, turned and moved by less than a cell, held by what of its outline lies within a `depth` of
     /// one side [cells]: that side and a piece of both beside it.
-    fn held_around_a_side(angle: f64, away: [f64; 2], depth: f64) -> Total {
+    /// `crack`: where one lies, before the turn.
+    fn held_around_a_side(angle: f64, away: [f64; 2], depth: f64, crack: &[[f64; 2]]) -> Total {
         let turn = nalgebra::Rotation2::new(angle);
         let placed = |low: [f64; 2], high: [f64; 2]| {
             let mut region: Region = test_scenes::rectangle(low, high);
@@ -237,6 +253,11 @@ mod tests {
         let mut scene = test_scenes::free_body(placed([0.0, -6.0], [12.0, 6.0]), 0.5);
         scene.solver.formulation = Formulation::Total;
         scene.solver.kernel = Kernel::Bilinear;
+        scene.solver.tip_division = TipDivision::PartlyCut;
+        let crack: Vec<[f64; 2]> = crack.iter().map(|&p| (turn * Point::from(p) + Vector::from(away)).into()).collect();
+        if !crack.is_empty() {
+            test_scenes::add_crack(&mut scene, &crack);
+        }
         scene.supports.push(Support {
             selection: Selection::Region(placed([-1.0, -7.0], [depth, 7.0])),
             velocity: [Some(0.0); 2],
@@ -258,7 +279,7 @@ mod tests {
             depth in 0.0..2.0_f64,
             speeds in prop::collection::vec(-1.0..1.0_f64, 64..65),
         ) {
-            let mut total = held_around_a_side(angle, away, depth);
+            let mut total = held_around_a_side(angle, away, depth, &[]);
             for axis in 0..2 {
                 let velocity = total.motion.velocity[axis].iter_mut().enumerate();
                 velocity.for_each(|(field, v)| *v = speeds[(field * 37 + axis * 11) % 64]);
@@ -275,6 +296,36 @@ mod tests {
                 let fastest = system.speeds(velocity).fold(0.0_f64, |fastest, speed| fastest.max(speed.abs()));
                 prop_assert!(fastest < 1e-3, "{fastest}");
             }
+        }
+
+        /// Truth: Gauss' principle, with the inertia that ties give to the opening of a crack whose tip is near or in
+        /// what is held: the change that holds it is orthogonal to what is left, so that their energies add up. They do
+        /// to rounding in nine of ten, and to .004 at the worst of 512, where means around a corner say nearly the
+        /// same; with impulses by the masses of fields alone to .22.
+        #[test]
+        fn the_least_change_holds_beside_a_tip(
+            angle in -3.2..3.2_f64,
+            away in prop::array::uniform2(0.0..1.0_f64),
+            depth in 0.0..2.0_f64,
+            tip in prop::array::uniform2(-1.5..1.5_f64),
+            heading in -3.2..3.2_f64,
+            speeds in prop::collection::vec(-1.0..1.0_f64, 64..65),
+        ) {
+            let end = [(depth + tip[0]).max(0.1), tip[1]];
+            let start = [(end[0] + 3.0 * heading.cos()).max(0.1), end[1] + 3.0 * heading.sin()];
+            let mut total = held_around_a_side(angle, away, depth, &[start, end]);
+            for axis in 0..2 {
+                let velocity = total.motion.velocity[axis].iter_mut().enumerate();
+                velocity.for_each(|(field, v)| *v = speeds[(field * 37 + axis * 11) % 64]);
+            }
+            let before = (total.kinetic_energy(), total.motion.velocity.clone());
+            total.apply_supports(0.0, 1e-3, 1e-3);
+            let after = total.kinetic_energy();
+            for (left, before) in total.motion.velocity.iter_mut().zip(&before.1) {
+                left.iter_mut().zip(before).for_each(|(left, before)| *left = before - *left);
+            }
+            let apart = (after + total.kinetic_energy()) / before.0 - 1.0;
+            prop_assert!(apart.abs() < 0.01, "{apart}");
         }
     }
 }

@@ -5,6 +5,7 @@ use super::lattice::Lattice;
 use super::motion::Motion;
 use super::near::Near;
 use super::tie::{self, Tie};
+use crate::boundary::constraints::Inertia;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::division::WINDOW;
 use crate::crack::tip::Tip;
@@ -106,16 +107,33 @@ impl Ties {
         ties
     }
 
-    /// Lays the ties anew of tips whose ties reach to where something has changed: a field that has lost its mass, to
-    /// another crack maybe, cannot be tied.
-    pub(super) fn refresh(&mut self, near: &Near, lattice: &Lattice, motion: &Motion, cracks: &Cracks) {
-        let reach = (WINDOW.hypot(WINDOW) + 1.0) * lattice.grid.cell_size;
-        self.lay_where(lattice, motion, cracks, |tip| near.is_within(tip, reach));
+    /// How fields of these inverse masses [m/kg] answer impulses with the inertia of the ties.
+    pub(super) fn inertia<'a>(&'a self, inverse_mass: &'a [f64]) -> TiedInertia<'a> {
+        let places = |group: &'a Coupled| group.fields.iter().enumerate().map(move |(k, &f)| (f, (group, k)));
+        TiedInertia { inverse_mass, groups: self.at_node.values().flat_map(places).collect() }
     }
 
-    fn lay_where(&mut self, lattice: &Lattice, motion: &Motion, cracks: &Cracks, is_changed: impl Fn(Point) -> bool) {
+    /// The fields that ties couple at these nodes.
+    fn fields_at<'a>(&'a self, nodes: impl IntoIterator<Item = &'a u32> + 'a) -> impl Iterator<Item = u32> + 'a {
+        nodes.into_iter().filter_map(|node| self.at_node.get(node)).flat_map(|group| group.fields.iter().copied())
+    }
+
+    /// Lays the ties anew of tips whose ties reach to where something has changed: a field that has lost its mass, to
+    /// another crack maybe, cannot be tied. Gives the fields whose inertia is another one.
+    pub(super) fn refresh(&mut self, near: &Near, lattice: &Lattice, motion: &Motion, cracks: &Cracks) -> Vec<u32> {
+        let reach = (WINDOW.hypot(WINDOW) + 1.0) * lattice.grid.cell_size;
+        self.lay_where(lattice, motion, cracks, |tip| near.is_within(tip, reach))
+    }
+
+    fn lay_where(
+        &mut self,
+        lattice: &Lattice,
+        motion: &Motion,
+        cracks: &Cracks,
+        is_changed: impl Fn(Point) -> bool,
+    ) -> Vec<u32> {
         if !lattice.has_ties() {
-            return;
+            return Vec::new();
         }
         let mut changed = BTreeSet::new();
         for id in cracks.ids().filter(|&id| is_changed(cracks.position(id))) {
@@ -139,30 +157,36 @@ impl Ties {
                 members.entry(tie.node).or_default().push((tip, k));
             }
         }
-        for node in changed {
+        let mut fields: Vec<u32> = self.fields_at(&changed).collect();
+        for &node in &changed {
             match members.remove(&node) {
                 Some(members) => self.couple(lattice, node, members),
                 None => drop(self.at_node.remove(&node)),
             }
         }
+        fields.extend(self.fields_at(&changed));
+        fields
     }
 
-    /// Softens the ties of a tip to where it is now.
-    pub(super) fn soften(&mut self, lattice: &Lattice, cracks: &Cracks, id: TipId) {
+    /// Softens the ties of a tip to where it is now. Gives the fields whose inertia is another one.
+    pub(super) fn soften(&mut self, lattice: &Lattice, cracks: &Cracks, id: TipId) -> Vec<u32> {
         let cell_size = lattice.grid.cell_size;
         let (tip, direction) = (cracks.position(id), cracks.last_direction(id));
-        let Some(ties) = self.of_tip.get_mut(&id) else { return };
+        let Some(ties) = self.of_tip.get_mut(&id) else { return Vec::new() };
         let mut nodes: Vec<u32> = Vec::with_capacity(ties.len());
         for tie in ties {
             tie.soften(tie.ahead_of(tip, direction, cell_size));
             nodes.push(tie.node);
         }
         nodes.dedup();
-        for node in nodes {
+        let mut fields: Vec<u32> = self.fields_at(&nodes).collect();
+        for &node in &nodes {
             if let Some(group) = self.at_node.remove(&node) {
                 self.couple(lattice, node, group.members);
             }
         }
+        fields.extend(self.fields_at(&nodes));
+        fields
     }
 
     /// What the ties of a tip would give up if it went straight on now.
@@ -248,6 +272,24 @@ impl Ties {
                 motion.velocity[axis][a] += impulse[axis] / mass[a];
                 motion.velocity[axis][b] -= impulse[axis] / mass[b];
             }
+        }
+    }
+}
+
+/// Masses of fields, and what ties add to them.
+pub(super) struct TiedInertia<'a> {
+    inverse_mass: &'a [f64],
+    /// The group of each field that is coupled, and its place there.
+    groups: BTreeMap<u32, (&'a Coupled, usize)>,
+}
+
+impl Inertia for TiedInertia<'_> {
+    fn response(&self, field: u32, each: &mut dyn FnMut(u32, f64)) {
+        let Some(&(group, place)) = self.groups.get(&field) else {
+            return each(field, self.inverse_mass[field as usize]);
+        };
+        for (&moved, row) in group.fields.iter().zip(group.mixing.chunks_exact(group.fields.len())) {
+            each(moved, self.inverse_mass[moved as usize] * row[place]);
         }
     }
 }

@@ -142,7 +142,7 @@ impl Supports {
         };
         let of_support: Vec<Held> = self.edges.iter().zip(fields).map(held).collect();
         let inverse_mass: Vec<f64> = mass.iter().map(|&m| if m > 0.0 { 1.0 / m } else { 0.0 }).collect();
-        self.systems = systems(&setup.scene.supports, &of_support, &inverse_mass);
+        self.systems = systems(&setup.scene.supports, &of_support, &inverse_mass[..]);
     }
 
     /// Makes the `velocity` of fields what is prescribed along edges. Gives the work of that [J/m] and adds it to
