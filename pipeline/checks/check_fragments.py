@@ -5,8 +5,8 @@
 
 Reads the GLB files of the part `cracked` in OUT. In every frame: one object per fragment of the take, with one name in
 all frames; each object watertight by itself, and of the same volume when trimesh merges its vertices as it does by
-default; the area of all objects that of the first frame times the mean det F of all particles within 1e-3, but where
-`output.opening` takes some of it off.
+default; the area of all objects, with what bevels and `output.opening` take off, that of the first frame times the mean det F of all
+particles within 1e-3.
 """
 
 import json
@@ -15,7 +15,9 @@ import sys
 
 import numpy
 import trimesh
+from check_solids import check_walls
 from glb import Glb
+from openings import taken_off
 from safetensors.numpy import load_file
 
 AREA = 1e-3
@@ -41,25 +43,25 @@ def main(take, folder):
     records = [record for record in records if record["part"] == "cracked" and record["format"] == "glb"]
     if not records:
         sys.exit(f"{folder}: no GLB file of the part `cracked`")
-    opening = json.loads((take / "manifest.json").read_text())["scene"]["output"]["opening"]
+    scene = json.loads((take / "manifest.json").read_text())["scene"]
     names, first, worst, failures = {}, None, 0.0, 0
     for record in records:
         frame = load_file(take / f"frame.{record['frame']:04}.safetensors")
         problems, found, volume = [], [], 0.0
         for name, piece, vertices, faces in Glb(folder / record["file"]).objects():
             wrong, part = check_solid(vertices, faces)
+            volume += part + check_walls(vertices, faces, record)[1]
             problems += [f"{name}: {problem}" for problem in wrong]
-            volume += part
             found.append(piece)
             if names.setdefault(piece, name) != name:
                 problems.append(f"{name} was {names[piece]}")
         fragments = sorted(set(frame["particles.piece"].tolist()))
         if sorted(found) != fragments:
             problems.append(f"objects {sorted(found)}, fragments {fragments}")
-        area = volume / record["thickness"] / numpy.linalg.det(frame["particles.deformation_gradient"]).mean()
+        area = (volume / record["thickness"] + taken_off(frame, scene)) / numpy.linalg.det(frame["particles.deformation_gradient"]).mean()
         first = first or area
         worst = max(worst, abs(area / first - 1))
-        if opening is None and abs(area / first - 1) > AREA:
+        if abs(area / first - 1) > AREA:
             problems.append(f"area off by {area / first - 1:.1e}")
         for problem in problems:
             print(f"{record['file']}: {problem}", file=sys.stderr)

@@ -12,10 +12,11 @@ Reads the GLB files of the part `cracked` in each FOLDER, made from TAKE. One ro
               in the first frame, over the size of the body
     turn      sharpest of these corners [degrees]
     flips     part of the segments of crack walls whose corners turn in opposite directions, by more than 2 degrees
-    volume    |volume / (area x thickness) - 1|
-    area      |area of all objects / (area in the first frame x mean det F) - 1|
+    volume    |volume and what bevels take off / (area x thickness) - 1|, less what roughness may change
+    area      |area of all objects and what `output.opening` takes off / (area in the first frame x mean det F) - 1|
     overlap   part of the smaller of two objects of a frame that lies in the other one
-    open      objects that are not watertight, by themselves or when trimesh merges their vertices
+    open      objects that are not watertight, by themselves or when trimesh merges their vertices, or whose walls stand
+              elsewhere than bevel and roughness allow
     merged    objects that are not when all vertices nearer than 1e-4 of the size of the body are merged
 
 Fails where a solid is open, also once vertices are merged, a volume is off by more than 1e-6, an area by more than 1e-3, or
@@ -32,7 +33,9 @@ import scipy.spatial
 import shapely
 from check_fragments import AREA, VOLUME, check_solid
 from check_overlap import MOST as OVERLAP
+from check_solids import check_walls
 from glb import Glb
+from openings import taken_off
 from safetensors.numpy import load_file
 
 SHARP = 20.0
@@ -167,9 +170,10 @@ def measure(take, folder):
     high = dict.fromkeys(("needle", "chord", "turn", "volume", "area", "overlap"), 0.0)
     below = triangles_seen = segments = flipped = opened = merged = 0
     first, size = None, 1.0
+    scene = json.loads((take / "manifest.json").read_text())["scene"]
     for record in records:
         glb = Glb(folder / record["file"])
-        regions, volume = [], 0.0
+        regions, volume, room = [], 0.0, 0.0
         for name, piece, vertices, faces in glb.objects():
             triangles = cap(vertices, faces)
             size = size if first else max(size if regions else 0.0, numpy.ptp(vertices[:, :2], axis=0).max())
@@ -186,14 +190,17 @@ def measure(take, folder):
             problems, part = check_solid(vertices, faces)
             opened += bool(problems)
             merged += is_open(vertices, faces, NEAR * size)
-            volume += part
+            wrong, less, off = check_walls(vertices, faces, record)
+            opened += bool(wrong)
+            volume, room = volume + part + less, room + off
             regions.append(shapely.union_all(shapely.polygons(triangles)))
         for vertices, faces in inside(glb):
             seen, found = flips(wall_edges(vertices, faces))
             segments, flipped = segments + seen, flipped + found
-        high["volume"] = max(high["volume"], abs(volume / (record["area"] * record["thickness"]) - 1))
+        expected = record["area"] * record["thickness"]
+        high["volume"] = max(high["volume"], (abs(volume - expected) - room) / expected)
         frame = load_file(take / f"frame.{record['frame']:04}.safetensors")
-        area = record["area"] / numpy.linalg.det(frame["particles.deformation_gradient"]).mean()
+        area = (record["area"] + taken_off(frame, scene)) / numpy.linalg.det(frame["particles.deformation_gradient"]).mean()
         first = first or area
         high["area"] = max(high["area"], abs(area / first - 1))
         high["overlap"] = max(high["overlap"], worst_overlap(regions))

@@ -20,6 +20,10 @@ pub struct FrameMeshes {
     pub up: UpAxis,
     /// Thickness of solids [m].
     pub thickness: f64,
+    /// How wide edges between walls of cracks and caps are bevelled [m]; 0: not at all.
+    pub bevel: f64,
+    /// How far walls of cracks are moved to be rough, at most [m]; 0: not at all.
+    pub roughness: f64,
     /// Meshes of each part that was asked for, in that order.
     pub parts: Vec<(Part, Vec<Mesh>)>,
 }
@@ -60,6 +64,7 @@ pub fn post_frame(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result
         };
         parts.push((part, meshes));
     }
-    let (provenance, thickness) = (Provenance::new(scene, frame), options.thickness);
-    Ok(FrameMeshes { provenance, up: options.up, thickness, parts })
+    let PostOptions { up, thickness, bevel, .. } = *options;
+    let roughness = options.roughness.map_or(0.0, |roughness| roughness.amplitude);
+    Ok(FrameMeshes { provenance: Provenance::new(scene, frame), up, thickness, bevel, roughness, parts })
 }

@@ -27,6 +27,12 @@ pub struct FileRecord {
     pub vertices: usize,
     /// Number of triangles.
     pub triangles: usize,
+    /// How wide edges between walls of cracks and caps are bevelled [m]; 0: not at all.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub bevel: f64,
+    /// How far walls of cracks are moved to be rough, at most [m]; 0: not at all.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub roughness: f64,
     /// Area of all solids in the drawing plane [m²].
     pub area: f64,
     /// Thickness of solids [m]; 0 where there are none.
@@ -36,6 +42,11 @@ pub struct FileRecord {
     /// The objects, in the order of the file.
     #[serde(default)]
     pub objects: Vec<ObjectRecord>,
+}
+
+/// What is not there is not listed.
+fn is_zero(length: &f64) -> bool {
+    *length == 0.0
 }
 
 /// One object of a file.

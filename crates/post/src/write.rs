@@ -8,7 +8,7 @@ use crate::record::{FileRecord, ObjectRecord, SequenceRecord, file_name};
 use crate::slot::Slot;
 use crate::write_error::WriteError;
 use fissure_files::Folder;
-use fissure_scene::{Format, Frame, Scene};
+use fissure_scene::{Format, Frame, Part, Scene};
 use std::path::PathBuf;
 
 /// Writes the meshes of `frame` into `folder`, which must exist, one file per part and format that shows
@@ -37,7 +37,8 @@ pub fn write_frame(
             let path = folder.place(&file)?;
             let bytes = encode(format, &shot).map_err(|cause| WriteError::Format { file: file.clone(), cause })?;
             write(folder, &file, format, &bytes)?;
-            records.push(record(file, path, format, volume, &shot));
+            let of_cracks = if shot.part == Part::Cracked { [meshes.bevel, meshes.roughness] } else { [0.0; 2] };
+            records.push(FileRecord { path, volume, ..record(file, format, of_cracks, &shot) });
         }
     }
     Ok(records)
@@ -73,7 +74,8 @@ pub(crate) fn write(folder: &Folder, file: &str, format: Format, bytes: &[u8]) -
     Ok(folder.write_unsynced(file, bytes)?)
 }
 
-fn record(file: String, path: PathBuf, format: Format, volume: f64, shot: &Shot<'_>) -> FileRecord {
+/// What is said of a file but its place and volume; `of_cracks`: width of bevels and amplitude of roughness [m].
+fn record(file: String, format: Format, [bevel, roughness]: [f64; 2], shot: &Shot<'_>) -> FileRecord {
     let objects = shot.objects;
     let solids = || {
         objects.iter().filter_map(|m| {
@@ -82,7 +84,7 @@ fn record(file: String, path: PathBuf, format: Format, volume: f64, shot: &Shot<
     };
     FileRecord {
         file,
-        path,
+        path: PathBuf::new(),
         part: shot.part,
         format,
         frame: shot.provenance.frame,
@@ -92,7 +94,9 @@ fn record(file: String, path: PathBuf, format: Format, volume: f64, shot: &Shot<
         triangles: objects.iter().map(Mesh::triangle_count).sum(),
         area: solids().map(|(area, _)| area).sum(),
         thickness: solids().next().map_or(0.0, |(_, thickness)| thickness),
-        volume,
+        bevel,
+        roughness,
+        volume: 0.0,
         objects: objects.iter().map(object_record).collect(),
     }
 }

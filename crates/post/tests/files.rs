@@ -312,6 +312,27 @@ fn the_manifest_does_not_depend_on_the_order_of_the_frames() {
     assert_eq!(inside.names().unwrap().len(), files.len() + 1);
 }
 
+/// Truth: the options. What cracks have no part in has neither, and nothing is said of what there is none of.
+#[test]
+fn the_manifest_tells_of_bevels_and_roughness() {
+    let folder = tempfile::tempdir().unwrap();
+    let rough = Roughness { amplitude: 0.01, length: 0.1, seed: 1 };
+    for (bevel, roughness, expected) in
+        [(0.0, None, [None, None]), (0.02, None, [Some(0.02), None]), (0.0, Some(rough), [None, Some(0.01)])]
+    {
+        let mut sample = sample(1);
+        let parts = vec![Part::Cracked, Part::Particles];
+        let options = PostOptions { bevel, roughness, parts, ..options(&sample.scene) };
+        sample.meshes = post_frame(&sample.scene, &sample.frame, &options).unwrap();
+        let records = sample.write(&Folder::new(folder.path()), &[Format::Glb]).unwrap();
+        let told = |record: &FileRecord| {
+            let value = serde_json::to_value(record).unwrap();
+            ["bevel", "roughness"].map(|key| value.get(key).map(|number| number.as_f64().unwrap()))
+        };
+        assert_eq!(records.iter().map(told).collect::<Vec<_>>(), [expected, [None, None]]);
+    }
+}
+
 #[test]
 fn a_folder_that_cannot_be_written_is_named() {
     let missing = tempfile::tempdir().unwrap().path().join("missing");
