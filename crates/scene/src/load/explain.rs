@@ -57,6 +57,16 @@ pub(super) fn explain(message: &str, path: &mut KeyPath, file: &Value) -> (Strin
     {
         return not_a_list(array, written, example);
     }
+    if let [Key::Name(table), ..] = path.0.as_slice()
+        && let Some(Value::Array(items)) = file.get(table)
+        && items.iter().all(Value::is_table)
+        && is_single_table(table)
+    {
+        let message = format!("`[[{table}]]` begins a list of tables, but there is only one `{table}` in a scene");
+        let remedy = format!("write `[{table}]`, once, with its keys below it");
+        path.0.truncate(1);
+        return (message, remedy);
+    }
     let found = written.map_or_else(String::new, |value| format!(" is {}", show(value)));
     let told = match choices(path).or_else(|| wanted(message)) {
         Some(words) => format!("`{path}`{found}, but it takes {words}"),
@@ -91,6 +101,12 @@ fn not_a_list(array: &str, written: &Value, example: &str) -> (String, String) {
         value => format!("`{array}` is {}, but it is a list of tables: each begins with `[[{array}]]`", show(value)),
     };
     (message, format!("write {example}"))
+}
+
+/// Whether a top-level key is one table of keys.
+fn is_single_table(key: &str) -> bool {
+    let path = KeyPath(vec![Key::Name(key.to_owned())]);
+    find(&SCHEMA, &path).is_some_and(|of| forms(&SCHEMA, of).iter().any(|form| form.get("properties").is_some()))
 }
 
 /// An item of a top-level array of tables, as one writes it.
@@ -219,12 +235,17 @@ pub(super) fn syntax_remedy(text: &str, line: &str) -> String {
             && whole.trim_start_matches('-').bytes().all(|b| b.is_ascii_digit())
             && part.starts_with(|c: char| c.is_ascii_digit())
     });
+    let is_odd = |quote: char| value.matches(quote).count() % 2 == 1;
     if text.trim_start().starts_with(['<', '{']) {
         "this is no scene file: a scene is TOML, begin one with `fissure new`".into()
     } else if comma {
         "write numbers with a point: `0.25`".into()
     } else if value.contains(|c: char| c.is_alphabetic()) && !value.contains(['"', '\'']) {
         "put text in quotes, and write numbers without units: `edge = \"top\"`, `40e6`".into()
+    } else if value.contains('\\') && value.contains('"') {
+        "write paths with `/`: `file = \"C:/drawings/wall.svg\"`, or in single quotes".into()
+    } else if is_odd('"') {
+        "put a quote before text and one behind it: `material = \"pmma\"`".into()
     } else {
         "correct the syntax".into()
     }

@@ -11,6 +11,7 @@ mod drawn_tip;
 mod driving;
 mod groups;
 mod idle;
+mod matter;
 mod pace;
 mod samples;
 mod section;
@@ -45,6 +46,7 @@ pub(crate) fn check_layout(scene: &Scene, particles: &Particles) -> Result<(), S
 pub fn warnings(scene: &Scene) -> Vec<Warning> {
     let elastic: Vec<Elastic> = scene.materials.iter().map(|m| Elastic::new(m, scene.plane)).collect();
     let mut found = width::narrow_bodies(scene);
+    found.extend(matter::unlikely_materials(scene, &elastic));
     found.extend(strain::soft_materials(scene, &elastic));
     match idle::nothing_loads(scene) {
         Some(warning) => found.push(warning),

@@ -191,6 +191,11 @@ impl<'d> Resolver<'d> {
                         Some(self.material(&KeyPath::item("material", i), &self.document.material[i], depth + 1)?)
                     }
                     (None, Some(preset)) => Some(preset),
+                    (None, None) if *name == keys.name => {
+                        let message = format!("material `{name}` is its own base");
+                        let remedy = "base it on another one, such as `base = \"pmma\"`, or give all its values";
+                        return Err(SceneFault::new(path.then("base"), message, remedy));
+                    }
                     (None, None) => return Err(self.unknown_material(path.then("base"), name)),
                 }
             }

@@ -123,7 +123,15 @@ impl Resolver<'_> {
     fn guide_called(&self, path: KeyPath, name: &str) -> Resolved<usize> {
         let names: Vec<&str> = self.document.guide.iter().map(|g| g.name.as_str()).collect();
         let found = names.iter().position(|n| *n == name);
-        found.ok_or_else(|| SceneFault::new(path, format!("there is no guide `{name}`"), nearest(name, &names)))
+        found.ok_or_else(|| {
+            let remedy = match names.as_slice() {
+                [] => format!(
+                    "there are none: draw one with `[[guide]]`, `name = \"{name}\"` and its `line` below it, or leave this key out"
+                ),
+                names => nearest(name, names),
+            };
+            SceneFault::new(path, format!("there is no guide `{name}`"), remedy)
+        })
     }
 
     /// A guide through `points`, without what branches off it.
