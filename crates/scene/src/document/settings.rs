@@ -20,7 +20,8 @@ pub struct GridKeys {
     /// Distance between neighbouring particles in m. Default: the larger side of the bodies' bounding box / 128.
     #[schemars(transform = LENGTH.bounds())]
     pub particle_spacing: Option<f64>,
-    /// Distance between neighbouring grid nodes in m. Default: twice the particle spacing.
+    /// Distance between neighbouring grid nodes in m, a whole number of particle spacings in the total formulation.
+    /// Default: two of them.
     #[schemars(transform = LENGTH.bounds())]
     pub cell_size: Option<f64>,
     /// How far polylines may be off the curves that were drawn in m. Default: a fiftieth of a cell or a quarter of a

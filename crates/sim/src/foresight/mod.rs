@@ -18,6 +18,7 @@ mod section;
 mod strain;
 mod supports;
 mod toughness;
+mod whole_cells;
 mod wholeness;
 mod width;
 
@@ -29,14 +30,15 @@ pub(crate) use strain::overload;
 
 use crate::material::elastic::Elastic;
 use crate::particles::Particles;
-use fissure_scene::{Scene, SceneFault, Warning};
+use fissure_scene::{Formulation, Scene, SceneFault, Warning};
 
 /// Checks what can be seen only when the particles are laid.
 ///
 /// # Errors
 /// A body that is too narrow for its particles to hold together; supports that contradict each other; a body inside a
-/// collider.
-pub(crate) fn check_layout(scene: &Scene, particles: &Particles) -> Result<(), SceneFault> {
+/// collider; cells that are no whole number of particles wide, where the `formulation` needs it.
+pub(crate) fn check_layout(scene: &Scene, particles: &Particles, formulation: Formulation) -> Result<(), SceneFault> {
+    whole_cells::check_whole_cells(scene, formulation)?;
     wholeness::check_wholeness(scene, particles)?;
     supports::check_supports(scene, particles)?;
     buried::check_colliders(scene, particles)

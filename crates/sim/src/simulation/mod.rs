@@ -106,7 +106,7 @@ impl Simulation {
         let scene = &formulation::settle(scene, formulation);
         memory::check(scene, formulation)?;
         let particles = Arc::new(Particles::fill(scene)?);
-        foresight::check_layout(scene, &particles)?;
+        foresight::check_layout(scene, &particles, formulation)?;
         let solver = formulation::build(formulation, scene, particles.clone(), &cracks)?;
         let mut simulation = Self {
             scene: scene.clone(),
