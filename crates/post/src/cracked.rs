@@ -107,7 +107,10 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
             own.entry(object).or_default().extend(edges);
         }
     }
-    let solids = Solids { relief: relief.as_ref(), own, ..Solids::new(scene, frame, options, &grids) };
+    let mut solids = Solids { relief: relief.as_ref(), own, ..Solids::new(scene, frame, options, &grids) };
+    if options.cut == Cut::Rest {
+        (0..).zip(&mut solids.interiors).for_each(|(body, interior)| interior.part(body, &cracks));
+    }
     let mut meshes = BTreeMap::new();
     let mut opened = Boundaries::new();
     for ((body, piece), fragments) in objects {

@@ -1,6 +1,8 @@
 //! What the material within a fragment carries.
 
 use crate::extrude::Extrusion;
+use crate::sight::Sight;
+use crate::smooth::SmoothCracks;
 use crate::snap::GridPoint;
 use crate::source::Carried;
 use crate::triangulate::Cap;
@@ -20,6 +22,8 @@ pub(crate) struct Interior<'a> {
     now: Bins,
     /// By where they are at rest, if that is needed.
     rest: Bins,
+    /// What lies between places at rest, if that is known.
+    sight: Option<Sight>,
 }
 
 /// Particles by place.
@@ -46,7 +50,12 @@ impl<'a> Interior<'a> {
     pub(crate) fn new(frame: &'a Frame, body: u32, spacing: f64, cut: Cut) -> Self {
         let bins = |places| Bins::new(frame, body, places, BIN * spacing);
         let rest = if cut == Cut::Rest { bins(&frame.particles.rest) } else { Bins::default() };
-        Self { frame, now: bins(&frame.particles.position), rest }
+        Self { frame, now: bins(&frame.particles.position), rest, sight: None }
+    }
+
+    /// Lets what is at rest follow particles on its own side of `cracks` of this body, `body`, only.
+    pub(crate) fn part(&mut self, body: u32, cracks: &SmoothCracks<'_>) {
+        self.sight = Some(Sight::new(self.frame, body, cracks, self.now.width));
     }
 
     /// What the corners within a polygon of fragment `piece` carry; where no particle is near, one has moved as the
@@ -75,16 +84,18 @@ impl<'a> Interior<'a> {
     /// its particles sees it: X = X_p + F_p⁻¹ (x − x_p). None where none of them is near.
     pub(crate) fn at(&self, place: Point, piece: u32) -> Option<(Point, Vector)> {
         let particles = &self.frame.particles;
-        let p = self.now.nearest(place, piece)?;
+        let p = self.now.nearest(place, piece, |_| true)?;
         let back = particles.deformation_gradient[p].try_inverse()?;
         Some((particles.rest[p] + back * (place - particles.position[p]), particles.velocity[p]))
     }
 
     /// Position [m] and velocity [m/s] of the material of fragment `piece` that is at `rest` [m] at rest, as the
-    /// nearest of its particles sees it: x = x_p + F_p (X − X_p). None where none of them is near.
+    /// nearest of its particles sees it: x = x_p + F_p (X − X_p); of those on its side of cracks, if there are any.
+    /// None where none of them is near.
     pub(crate) fn moved(&self, rest: Point, piece: u32) -> Option<(Point, Vector)> {
         let particles = &self.frame.particles;
-        let p = self.rest.nearest(rest, piece)?;
+        let on_this_side = |p: usize| self.sight.as_ref().is_none_or(|sight| sight.reaches(rest, particles.rest[p]));
+        let p = self.rest.nearest(rest, piece, on_this_side).or_else(|| self.rest.nearest(rest, piece, |_| true))?;
         let way = particles.deformation_gradient[p] * (rest - particles.rest[p]);
         Some((particles.position[p] + way, particles.velocity[p]))
     }
@@ -117,8 +128,8 @@ impl Bins {
     }
 
     /// The particle of fragment `piece` nearest to `place`, of those in its bin and in those around it; of several the
-    /// one in the first column, the first row and with the lowest number.
-    fn nearest(&self, place: Point, piece: u32) -> Option<usize> {
+    /// one in the first column, the first row and with the lowest number. Only such that are `welcome`.
+    fn nearest(&self, place: Point, piece: u32, welcome: impl Fn(usize) -> bool) -> Option<usize> {
         let [column, row] = bin_of(place, self.width);
         let around = |x: i32| x.saturating_sub(1)..=x.saturating_add(1);
         let mut nearest: Option<(f64, u32)> = None;
@@ -126,7 +137,7 @@ impl Bins {
             let Some(range) = self.ranges.get(&bin) else { continue };
             for binned in self.particles[range.clone()].iter().filter(|binned| binned.piece == piece) {
                 let distance = (binned.place - place).norm_squared();
-                if nearest.is_none_or(|(least, _)| distance < least) {
+                if nearest.is_none_or(|(least, _)| distance < least) && welcome(binned.particle as usize) {
                     nearest = Some((distance, binned.particle));
                 }
             }

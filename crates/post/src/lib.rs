@@ -8,7 +8,7 @@
 //!    and each its own boundary: edges of moved rings and crack faces that know the rest position, velocity and arc
 //!    length of the material at their ends. `outline`: a body without its cracks.
 //!    `smooth`: paths of cracks without their zigzag. `rest_cut`: triangles at rest that the material carries, in place
-//!    of steps 3 to 7.
+//!    of steps 3 to 7; `sight`: on which side of cracks.
 //!    `crumbs`: fragments of a few particles move as these do. `closed`: cracks within a fragment are closed where they
 //!    are hardly open.
 //! 3. `boolean`: a fragment is where its own edges wind around a place at least once. An open crack in it takes one
@@ -82,6 +82,7 @@ mod rough_walls;
 #[cfg(feature = "files")]
 mod sequences;
 mod short_edges;
+mod sight;
 mod slivers;
 mod slot;
 mod smooth;

@@ -380,6 +380,42 @@ fn the_cut_at_rest_stays_and_has_the_same_area() {
     }
 }
 
+/// Truth: the drawing. A zigzag that opens as a wedge within one fragment, the particles on either side of it with its
+/// faces: nothing of one side goes with the other one, so the wedge is empty and no triangle is folded.
+#[test]
+fn what_lies_beside_an_open_crack_goes_with_its_own_side() {
+    let region = square(20.0);
+    let scene = scene(region.clone());
+    let half = |x: f64| (1.5 * (1.0 - x / 14.0)).max(0.0);
+    for (height, smoothing) in [(0.0, 0.0), (0.6, 0.0), (0.6, 0.5)] {
+        let path = |x: f64| 10.0 + height * (x / 0.7 - (x / 0.7).round());
+        let rest: Vec<Point> = (0..=80).map(|i| 0.175 * f64::from(i)).map(|x| Point::new(x, path(x))).collect();
+        let opening: Vec<f64> = rest.iter().map(|p| 2.0 * half(p.x)).collect();
+        let crack = Opened::symmetric(rest, &opening, CrackEnd::Mouth, CrackEnd::Tip);
+        let mut frame = frame(&region, 40, &[crack]);
+        let side = |p: Point| if p.y > path(p.x) { 1.0 } else { -1.0 };
+        frame.particles = particles(&region, |p| (0, Vector::new(0.0, side(p) * half(p.x))));
+        let (rest, gradients) = (&frame.particles.rest, &mut frame.particles.deformation_gradient);
+        for (rest, gradient) in rest.iter().zip(gradients).filter(|(rest, _)| rest.x < 14.0) {
+            gradient[(1, 0)] = -1.5 / 14.0 * side(*rest);
+        }
+        for outline in &mut frame.outlines {
+            for (position, rest) in outline.position.iter_mut().zip(&outline.rest) {
+                *position = rest + Vector::new(0.0, side(*rest) * half(rest.x));
+            }
+        }
+        let options = PostOptions { smoothing, cut: Cut::Rest, cap_size: Some(0.12), ..options(&scene) };
+        let meshes = post_frame(&scene, &frame, &options).unwrap().parts.remove(0).1;
+        for mesh in &meshes {
+            let corner = |i: u32| mesh.vertices[i as usize].position;
+            let front = mesh.all_triangles().filter(|t| t.iter().all(|&i| mesh.vertices[i as usize].normal[2] == 1.0));
+            let twice = |[a, b, c]: [[f64; 3]; 3]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+            let folded = front.map(|t| twice(t.map(corner))).filter(|twice| *twice <= 0.0).count();
+            assert_eq!(folded, 0, "{height} {smoothing}");
+        }
+    }
+}
+
 /// Truth: by hand. A zigzag that cuts a square in two: smoothed, it keeps the areas of both halves and their sum to the
 /// grid, and its turns are a fraction of what they were.
 #[test]
