@@ -87,13 +87,15 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
         .map(|roughness| Relief::new(roughness, options.thickness, moved, &cracks.cracks, &cracks.offsets));
     // Faces that only move into the material leave no fragment beyond itself.
     let takes_off = |settings: &OpeningSettings| settings.factor.value(frame.time) >= 1.0;
-    let own_lines = options.opening.as_ref().filter(|settings| takes_off(settings)).map(|_| {
-        let still = shifts.iter().map(|of_crack| vec![Shift::default(); of_crack.len()]).collect();
-        MovedLines::new(scene, moved, &cracks, still).with(histories.clone())
-    });
+    let still = || shifts.iter().map(|of_crack| vec![Shift::default(); of_crack.len()]).collect();
+    let still_lines = options
+        .opening
+        .as_ref()
+        .map(|settings| (takes_off(settings), MovedLines::new(scene, moved, &cracks, still()).with(histories.clone())));
     let lines = MovedLines::new(scene, moved, &cracks, shifts).with(histories);
     let mut objects = BTreeMap::<ObjectKey, Vec<Vec<Vec<SourceEdge>>>>::new();
     let mut own = Boundaries::new();
+    let mut ways = BTreeMap::<ObjectKey, Vec<Vec<Vector>>>::new();
     for (fragment, number) in fragments.list().iter().zip(numbers) {
         let (grid, object) = (grids[fragment.body as usize], (fragment.body, number));
         let mut boundaries: Vec<Vec<SourceEdge>> =
@@ -101,11 +103,17 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
         if options.opening.is_none() {
             hold_crumb(&mut boundaries, frame, object, scene.particle_spacing, grid);
         }
-        objects.entry(object).or_default().push(boundaries);
-        if let Some(lines) = &own_lines {
-            let edges = fragment.boundaries.iter().flat_map(|boundary| lines.edges(boundary, grid));
-            own.entry(object).or_default().extend(edges);
+        if let Some((takes_off, lines)) = &still_lines {
+            let edges: Vec<SourceEdge> =
+                fragment.boundaries.iter().flat_map(|boundary| lines.edges(boundary, grid)).collect();
+            let shown = boundaries.iter().flatten().zip(&edges);
+            let of_corners = shown.map(|(shown, still)| grid.place(shown.a) - grid.place(still.a));
+            ways.entry(object).or_default().push(of_corners.collect());
+            if *takes_off {
+                own.entry(object).or_default().extend(edges);
+            }
         }
+        objects.entry(object).or_default().push(boundaries);
     }
     let mut solids = Solids { relief: relief.as_ref(), own, ..Solids::new(scene, frame, options, &grids) };
     if options.cut == Cut::Rest {
@@ -115,7 +123,8 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
     let mut opened = Boundaries::new();
     for ((body, piece), fragments) in objects {
         if options.cut == Cut::Rest
-            && let Some(mesh) = solids.at_rest(body, piece, &fragments)
+            && let Some(mesh) =
+                solids.at_rest(body, piece, &fragments, ways.get(&(body, piece)).map_or(&[], Vec::as_slice))
         {
             meshes.extend(mesh.map(|mesh| ((body, piece), mesh)));
             continue;
@@ -359,15 +368,23 @@ impl<'a> Solids<'a> {
 
     /// Extrudes the triangles of `fragments` at rest, moved with the material. None where that is no solid: where the
     /// material has folded over so that one corner lies on another. Nothing in it where it is smaller than asked for.
-    fn at_rest(&self, body: u32, piece: u32, fragments: &[Vec<Vec<SourceEdge>>]) -> Option<Option<Mesh>> {
+    /// `ways`: how far the corners of each are moved to be shown [m]; empty where none is.
+    fn at_rest(
+        &self,
+        body: u32,
+        piece: u32,
+        fragments: &[Vec<Vec<SourceEdge>>],
+        ways: &[Vec<Vector>],
+    ) -> Option<Option<Mesh>> {
         let sources: Vec<SourceEdge> = fragments.iter().flatten().flatten().copied().collect();
         let (grid, interior) = (self.grids[body as usize], &self.interiors[body as usize]);
         let (low, high) = self.scene.bodies[body as usize].region.bounds();
         let grids = [grid, Grid::covering(&[low, high], 0.0)];
         let mut first = 0;
         let mut caps = Vec::with_capacity(fragments.len());
-        for boundaries in fragments {
-            caps.push(rest_cap(boundaries, first, self.options.cap_size, grids, interior, piece)?);
+        for (i, boundaries) in fragments.iter().enumerate() {
+            let ways = ways.get(i).map_or(&[][..], Vec::as_slice);
+            caps.push(rest_cap(boundaries, ways, first, self.options.cap_size, grids, interior, piece)?);
             first += boundaries.iter().map(Vec::len).sum::<usize>();
         }
         caps.retain(|(cap, _)| area(&cap.shape, grid) >= self.options.smallest_fragment);

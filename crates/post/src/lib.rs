@@ -8,7 +8,8 @@
 //!    and each its own boundary: edges of moved rings and crack faces that know the rest position, velocity and arc
 //!    length of the material at their ends. `outline`: a body without its cracks.
 //!    `smooth`: paths of cracks without their zigzag. `rest_cut`: triangles at rest that the material carries, in place
-//!    of steps 3 to 7; `sight`: on which side of cracks.
+//!    of steps 3 to 7; `sight`: on which side of cracks, `drawn_along`: with
+//!    faces that are shown elsewhere.
 //!    `crumbs`: fragments of a few particles move as these do. `closed`: cracks within a fragment are closed where they
 //!    are hardly open.
 //! 3. `boolean`: a fragment is where its own edges wind around a place at least once. An open crack in it takes one
@@ -48,6 +49,7 @@ mod colliders;
 mod common;
 mod cracked;
 mod crumbs;
+mod drawn_along;
 mod drawn_curve;
 mod edges;
 mod error;

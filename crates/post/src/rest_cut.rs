@@ -5,11 +5,12 @@
 //! corner, what lies between two edges of the boundary has a corner of its own.
 
 use crate::boolean::{Edge, SourceIndex};
+use crate::drawn_along::drawn_along;
 use crate::interior::Interior;
 use crate::snap::Grid;
 use crate::source::{Carried, SourceEdge};
 use crate::triangulate::Cap;
-use fissure_scene::Point;
+use fissure_scene::{Point, Vector};
 use spade::handles::FixedVertexHandle;
 use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation as _};
 use std::collections::{BTreeMap, BTreeSet};
@@ -24,10 +25,13 @@ const SMALLEST_ANGLE: f64 = 20.1;
 ///
 /// `grids`: those of the body now and at rest.
 ///
+/// `ways`: how far each edge's first corner is moved to be shown, edge after edge [m]; empty where nothing is.
+///
 /// None where edges cross at rest, which those of [`fissure_scene::Fragments`] do by rounding to the grid only, or
 /// where no particle of fragment `piece` is near to a corner.
 pub(crate) fn rest_cap(
     boundaries: &[Vec<SourceEdge>],
+    ways: &[Vector],
     first: usize,
     size: Option<f64>,
     grids: [Grid; 2],
@@ -71,6 +75,14 @@ pub(crate) fn rest_cap(
             };
         }
         found.push(triangle);
+    }
+    if !ways.is_empty() {
+        let outer = boundaries.iter().flatten().map(|edge| edge.carried[0].rest);
+        let places: Vec<Point> = outer.chain(carried.iter().map(|carried| carried.rest)).collect();
+        let along = drawn_along(ways, &places, &found);
+        for (place, way) in within.iter_mut().zip(&along[ways.len()..]) {
+            *place = grid.snap(grid.place(*place) + way);
+        }
     }
     Some((Cap { shape, within, triangles: found }, carried))
 }
