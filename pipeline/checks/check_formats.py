@@ -36,6 +36,8 @@ from safetensors.numpy import load_file
 from vtk.util.numpy_support import vtk_to_numpy
 
 VTK_VOLUME = 1e-5
+# A mitre of a bevel lies twice its width in at most.
+MITRE = 2.0
 RELATIVE = 1e-6
 ATTRIBUTES = ("crack_age", "mouth_distance", "mode_1")
 
@@ -317,13 +319,16 @@ def check_obj(folder, records):
 def check_svg(folder, records):
     for record in records:
         root = xml.etree.ElementTree.parse(folder / record["file"]).getroot()
-        area = 0.0
+        area = length = 0.0
         for path in root.find(".//*[@id='fragments']"):
             for ring in path.get("d").split("Z")[:-1]:
                 x, y = numpy.array(re.findall(r"[ML](\S+) ([^ML]+)", ring), float).T / 1000
                 # y down: what is counter-clockwise in the scene is clockwise here.
                 area -= 0.5 * float(numpy.sum(x * numpy.roll(y, -1) - y * numpy.roll(x, -1)))
-        if not abs(area / record["area"] - 1) <= RELATIVE:
+                length += float(numpy.hypot(numpy.roll(x, -1) - x, numpy.roll(y, -1) - y).sum())
+        # Drawn are caps, which end where bevels begin.
+        most = record["area"] * (1 + RELATIVE)
+        if not record["area"] * (1 - RELATIVE) - MITRE * record.get("bevel", 0) * length <= area <= most:
             yield record["file"], f"area {area} instead of {record['area']}"
 
 
