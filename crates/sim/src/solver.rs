@@ -49,6 +49,9 @@ pub(crate) trait Solver: Snapshot + Observed + std::fmt::Debug + Send {
     /// that a run that goes on from here gives the same.
     fn begin_run(&mut self);
 
+    /// A frame ends: what was laid where tips were is laid where they are, as it is when a run goes on from here.
+    fn end_frame(&mut self, cracks: &Cracks);
+
     /// Whether surfaces have touched in the last step.
     fn is_touching(&self) -> bool;
 

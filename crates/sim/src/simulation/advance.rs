@@ -79,6 +79,7 @@ impl Simulation {
                 return Ok(false);
             }
         }
+        self.solver.end_frame(&self.state.cracks);
         self.watch_energy().map_err(|error| self.name_cause(error))?;
         self.state.frame_number += 1;
         self.split_fragments();

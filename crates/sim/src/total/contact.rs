@@ -112,13 +112,8 @@ pub(super) type FaceForces = Vec<(u32, [f64; 2])>;
 impl Contacts {
     /// The points of `lattice`. `friction`: coefficient of friction; none where faces pass through each other.
     pub(super) fn new(friction: Option<f64>, lattice: &Lattice, cracks: &Cracks) -> Self {
-        let forks = cracks.forks();
-        let mut points = Vec::new();
-        for node in lattice.fields().divided_nodes() {
-            add_points_of_node(lattice, node, cracks, &forks, &mut points);
-        }
         Self {
-            points,
+            points: all_points(lattice, cracks),
             friction,
             longest_slide: TOGETHER * lattice.grid.cell_size,
             cell_size: lattice.grid.cell_size,
@@ -144,6 +139,28 @@ impl Contacts {
     pub(super) fn all_forces(&self) -> FaceForces {
         let pressed = self.points.iter().enumerate().filter(|(_, point)| point.force != Vector::zeros());
         pressed.map(|(index, point)| (index as u32, point.force.into())).collect()
+    }
+
+    /// Lays all points anew, with the forces that they have: a tip slides on between two changes, and with it the end
+    /// of the segment that the points around it were laid on.
+    pub(super) fn lay_anew(&mut self, lattice: &Lattice, cracks: &Cracks) {
+        if self.friction.is_none() {
+            return;
+        }
+        let before = std::mem::replace(&mut self.points, all_points(lattice, cracks));
+        let mut before = before.into_iter().filter(|point| point.force != Vector::zeros()).peekable();
+        let mut begin = 0;
+        while let Some(node) = before.peek().map(|point| point.node) {
+            let own: Vec<MeetingPoint> = std::iter::from_fn(|| before.next_if(|point| point.node == node)).collect();
+            begin += self.points[begin..].partition_point(|point| point.node < node);
+            let count = self.points[begin..].partition_point(|point| point.node == node);
+            for point in own {
+                let same = |now: &&mut MeetingPoint| now.crack == point.crack && now.force == Vector::zeros();
+                if let Some(now) = self.points[begin..begin + count].iter_mut().find(same) {
+                    now.force = point.force;
+                }
+            }
+        }
     }
 
     /// Whether faces can press on each other.
@@ -435,6 +452,16 @@ impl MeetingPoint {
             }
         }
     }
+}
+
+/// The points of all nodes.
+fn all_points(lattice: &Lattice, cracks: &Cracks) -> Vec<MeetingPoint> {
+    let forks = cracks.forks();
+    let mut points = Vec::new();
+    for node in lattice.fields().divided_nodes() {
+        add_points_of_node(lattice, node, cracks, &forks, &mut points);
+    }
+    points
 }
 
 fn add_points_of_node(

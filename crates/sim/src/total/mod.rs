@@ -362,6 +362,10 @@ impl Solver for Total {
         self.steps_since_check = 0;
     }
 
+    fn end_frame(&mut self, cracks: &Cracks) {
+        self.contacts.lay_anew(&self.lattice, cracks);
+    }
+
     fn is_touching(&self) -> bool {
         self.touching.is_touching()
     }

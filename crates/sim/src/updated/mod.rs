@@ -334,6 +334,8 @@ impl Solver for Updated {
 
     fn begin_run(&mut self) {}
 
+    fn end_frame(&mut self, _cracks: &Cracks) {}
+
     fn is_touching(&self) -> bool {
         false
     }
