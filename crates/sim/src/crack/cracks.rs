@@ -233,14 +233,32 @@ impl Cracks {
     /// The cracks as the division sees them, their points being where `points` puts those of a crack (its number, the
     /// crack); pairs reach over `reach` [m] along an axis.
     pub(crate) fn lines(&self, points: impl Fn(usize, &Crack) -> Vec<Point>, reach: f64) -> Vec<CrackLine> {
-        // A line from a particle inside the body to a node outside may pass a mouth by as much as the kernel reaches.
-        let beyond = 2.0 * reach;
         let of = |(i, crack): (usize, &Crack)| {
-            let mut line = crack.line(i, points(i, crack), beyond);
+            let mut line = crack.line(i, points(i, crack), beyond(reach));
             line.trunk = self.way_along_trunk(i, &points, 5.0 * reach);
             line
         };
         self.iter().enumerate().map(of).collect()
+    }
+
+    /// A crack as the division sees it, its points as lines were last cut for them; none where it is as it was
+    /// `before`. Of points only the ends are compared: those between never move.
+    pub(crate) fn changed_line(&self, index: usize, before: Option<&CrackLine>, reach: f64) -> Option<CrackLine> {
+        let crack = &self.0[index];
+        let as_cut = |_: usize, crack: &Crack| crack.points_as_cut();
+        let trunk = self.way_along_trunk(index, &as_cut, 5.0 * reach);
+        let is_same = |before: &&CrackLine| {
+            let [start, end] = crack.ends_as_cut();
+            let ends = (before.points.first() == Some(&start), before.points.last() == Some(&end));
+            ends == (true, true)
+                && before.points.len() == crack.points.len()
+                && [before.start, before.end] == crack.line_ends(beyond(reach))
+                && before.trunk == trunk
+        };
+        if before.filter(is_same).is_some() {
+            return None;
+        }
+        Some(CrackLine { trunk, ..crack.line(index, crack.points_as_cut(), beyond(reach)) })
     }
 
     /// The way to the start of a crack along the one that it leaves there, over `length` [m], the start left out; empty
@@ -331,4 +349,9 @@ impl Cracks {
             tip.add_grown(distance);
         }
     }
+}
+/// How far lines go on beyond open ends [m], where pairs reach over `reach` [m]: a line from a particle inside the body
+/// to a node outside may pass a mouth by as much as the kernel reaches.
+fn beyond(reach: f64) -> f64 {
+    2.0 * reach
 }

@@ -28,6 +28,11 @@ pub(crate) const WINDOW: f64 = 2.0;
 /// How far ahead of the tip, in cells, the crack is thought to go on.
 const AHEAD: f64 = WINDOW + 2.0;
 
+/// Number of the first segment of a crack in the lists of cells, before it has got on at its start, and of the first
+/// continuation.
+const FIRST_NUMBER: u32 = 1 << 30;
+const FIRST_CONTINUATION: u32 = 1 << 31;
+
 /// How pairs around a tip are split with [`TipDivision::PartlyCut`]. Lengths in cells.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TipCut {
@@ -127,6 +132,8 @@ struct Line {
     of: Vec<u32>,
     /// The last segment of the crack.
     last: u32,
+    /// Number of the first one in the lists of cells: see [`Line::index`].
+    first_number: u32,
     /// Whether each is so near to a tip that the tip says how it divides: see [`divide`].
     at_tip: Vec<bool>,
     /// Whether it has a continuation beyond a junction.
@@ -137,20 +144,50 @@ struct Line {
 }
 
 impl Line {
+    /// Where the segment with a number in the lists of cells is. Those of the crack itself keep their numbers where it
+    /// gets on at its start; continuations have theirs behind them.
+    #[inline]
+    fn index(&self, number: u32) -> usize {
+        match number.checked_sub(FIRST_CONTINUATION) {
+            Some(further) => self.last as usize + 1 + further as usize,
+            None => (number - self.first_number) as usize,
+        }
+    }
+
+    /// The number of a segment in the lists of cells.
+    fn number(&self, index: usize) -> u32 {
+        match (index as u32).checked_sub(self.last + 1) {
+            Some(further) => FIRST_CONTINUATION + further,
+            None => self.first_number + index as u32,
+        }
+    }
+
+    /// The segments of the crack itself that it had `before`, for which what they are compared by is `same`, and by how
+    /// much they have moved up since: the longest stretch of those that begin at an end or hold the middle.
+    fn kept(&self, before: &Self, same: impl Fn(usize, usize) -> bool) -> (Range<usize>, i64) {
+        let [now, was] = [self, before].map(|line| line.last as usize + 1);
+        let middle = was / 2;
+        // A crack has got new points at its ends, if any: what is between stays.
+        let added =
+            (0..=now.saturating_sub(was)).find(|&k| self.segments[middle.min(now - 1) + k] == before.segments[middle]);
+        let moved = [Some((0, 0)), Some((was - 1, now as i64 - was as i64)), added.map(|k| (middle, k as i64))];
+        let stretch = |(from, by): (usize, i64)| {
+            let is_kept = |&k: &usize| usize::try_from(k as i64 + by).is_ok_and(|at| at < now && same(at, k));
+            let below = (0..from).rev().take_while(is_kept).count();
+            let above = (from..was).take_while(is_kept).count();
+            (if above == 0 { from..from } else { from - below..from + above }, by)
+        };
+        moved.into_iter().flatten().map(stretch).max_by_key(|(range, _)| range.len()).unwrap_or((0..0, 0))
+    }
+
     /// The segments that divide, or divided `before`, as they do not at the other of the two moments.
     fn changed_segments(&self, before: Option<&Self>, cell_size: f64) -> Vec<(Point, Point)> {
         let Some(before) = before.filter(|before| before.cut == self.cut && before.crack == self.crack) else {
             let before = before.into_iter().flat_map(|before| &before.segments);
             return before.chain(&self.segments).copied().collect();
         };
-        // A crack has got new points at its ends, if any: what is between stays.
-        let same = |now: usize, was: usize| self.part(now) == before.part(was);
-        let [now, was] = [self, before].map(|line| line.last as usize + 1);
-        let first = (0..now.min(was)).take_while(|&k| same(k, k)).count();
-        let last = (0..now.min(was) - first).take_while(|&k| same(now - 1 - k, was - 1 - k)).count();
-        // What stays, now and before.
-        let stays = [now, was].map(|count| [0..first, count - last..count]);
-        let stays = if first + last == 0 { self.between_ends(before, [now, was]).unwrap_or(stays) } else { stays };
+        let (stayed, by) = self.kept(before, |now, was| self.part(now) == before.part(was));
+        let stays = (stayed.start as i64 + by) as usize..(stayed.end as i64 + by) as usize;
         let has = |line: &Self, part| (0..line.segments.len()).any(|k| line.part(k) == part);
         // What a tip that has moved says of segments near to it.
         let has_moved = |tip: &&TipRay| !(self.tips.contains(tip) && before.tips.contains(tip));
@@ -161,28 +198,14 @@ impl Line {
             let reach = 2.0 * AHEAD * cell_size;
             line.at_tip[k] && moved.iter().any(|&tip| distance_to_segment(tip, a, b) < reach)
         };
-        let changed = |line: &Self, other: &Self, stays: &[Range<usize>; 2]| -> Vec<(Point, Point)> {
+        let changed = |line: &Self, other: &Self, stays: &Range<usize>| -> Vec<(Point, Point)> {
             let count = line.last as usize + 1;
-            let is_new = |k: usize| {
-                if k < count { !stays.iter().any(|part| part.contains(&k)) } else { !has(other, line.part(k)) }
-            };
+            let is_new = |k: usize| if k < count { !stays.contains(&k) } else { !has(other, line.part(k)) };
             (0..line.segments.len()).filter(|&k| is_new(k) || is_near(line, k)).map(|k| line.segments[k]).collect()
         };
-        let mut segments = changed(self, before, &stays[0]);
-        segments.extend(changed(before, self, &stays[1]));
+        let mut segments = changed(self, before, &stays);
+        segments.extend(changed(before, self, &stayed));
         segments
-    }
-
-    /// The segments that stay, now and before, of a crack of so many that has got on at both its ends: those around the
-    /// one that was in its middle. None where that is no longer there.
-    fn between_ends(&self, before: &Self, [now, was]: [usize; 2]) -> Option<[[Range<usize>; 2]; 2]> {
-        let middle = was / 2;
-        let added = (0..=now.checked_sub(was)?).find(|&k| self.segments[middle + k] == before.segments[middle])?;
-        let same = |k: &usize| self.part(k + added) == before.part(*k);
-        let below = (0..middle).rev().take_while(same).count();
-        let above = (middle..was).take_while(same).count();
-        let range = middle - below..middle + above;
-        Some([[range.start + added..range.end + added, 0..0], [range, 0..0]])
     }
 
     /// All that a segment divides by.
@@ -198,8 +221,9 @@ impl Line {
         node: Point,
         counts: impl Fn(SegmentKind) -> bool,
     ) -> Meeting {
-        let near = segments.iter().filter(|s| !s.is_apart(particle, node) && counts(self.kinds[s.segment as usize]));
-        meeting(particle, node, near.map(|s| Segment { number: s.segment, a: s.a, b: s.b }))
+        let numbered = segments.iter().map(|s| (self.index(s.segment), s));
+        let near = numbered.filter(|(index, s)| !s.is_apart(particle, node) && counts(self.kinds[*index]));
+        meeting(particle, node, near.map(|(index, s)| Segment { number: index as u32, a: s.a, b: s.b }))
     }
 }
 
@@ -208,6 +232,7 @@ impl Line {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Listed {
     line: u32,
+    /// Its number, by which lists rise: see [`Line::index`].
     segment: u32,
     a: Point,
     b: Point,
@@ -286,35 +311,49 @@ impl Division {
         division
     }
 
-    /// Puts `lines` in the place of those before. The cost is that of what has changed: of a crack that has grown at
-    /// its end, that of its new segments. Returns the boxes, from low to high corner [m], outside which particles are
-    /// divided as they were.
+    /// Puts `lines` in the place of those before: see [`Division::follow`].
     pub(crate) fn set_lines(&mut self, lines: Vec<CrackLine>) -> Vec<(Point, Point)> {
+        let mut lines: Vec<Option<CrackLine>> = lines.into_iter().map(Some).collect();
+        self.follow(lines.len(), |index, before| lines[index].take().filter(|line| before != Some(line)))
+    }
+
+    /// Follows cracks, of which there are `count` now: `changed` gives the line of each by its number and what it was
+    /// before, or none where it is as it was. The cost is that of what has changed: of a crack that has grown, that of
+    /// its new segments. Returns the boxes, from low to high corner [m], outside which particles are divided as they
+    /// were.
+    pub(crate) fn follow(
+        &mut self,
+        count: usize,
+        mut changed: impl FnMut(usize, Option<&CrackLine>) -> Option<CrackLine>,
+    ) -> Vec<(Point, Point)> {
         let mut boxes = Vec::new();
-        for index in lines.len()..self.lines.len() {
+        for index in count..self.lines.len() {
             self.lines[index].segments.iter().for_each(|&segment| self.add_box(segment, &mut boxes));
-            self.take_out(index, 0);
+            self.take_out(index, 0..0);
         }
-        self.lines.truncate(lines.len());
-        for (index, given) in lines.iter().enumerate() {
-            if self.given.get(index) == Some(given) {
-                continue;
-            }
-            let line = prepare(given, self.tip_division, self.cut, self.cell_size, self.reach);
-            let changed = line.changed_segments(self.lines.get(index), self.cell_size);
-            changed.into_iter().for_each(|segment| self.add_box(segment, &mut boxes));
-            let before = self.lines.get(index).map_or(&[][..], |before| &before.segments);
-            let unchanged = line.segments.iter().zip(before).take_while(|(now, before)| now == before).count();
+        self.lines.truncate(count);
+        self.given.truncate(count);
+        for index in 0..count {
+            let Some(given) = changed(index, self.given.get(index)) else { continue };
+            let mut line = prepare(&given, self.tip_division, self.cut, self.cell_size, self.reach);
+            let segments = line.changed_segments(self.lines.get(index), self.cell_size);
+            segments.into_iter().for_each(|segment| self.add_box(segment, &mut boxes));
             if index < self.lines.len() {
-                self.take_out(index, unchanged);
+                let before = &self.lines[index];
+                let (kept, by) = line.kept(before, |now, was| line.segments[now] == before.segments[was]);
+                line.first_number = (i64::from(before.first_number) - by) as u32;
+                let kept_now = (kept.start as i64 + by) as usize..(kept.end as i64 + by) as usize;
+                self.take_out(index, kept);
                 self.lines[index] = line;
+                self.given[index] = given;
+                self.put_in(index, kept_now);
             } else {
                 self.lines.push(line);
+                self.given.push(given);
+                self.put_in(index, 0..0);
             }
-            self.put_in(index, unchanged);
         }
         self.has_junctions = self.lines.iter().any(|l| l.has_junction);
-        self.given = lines;
         boxes
     }
 
@@ -343,11 +382,12 @@ impl Division {
         [low, high].map(|corner| [corner.x.floor() as i64, corner.y.floor() as i64])
     }
 
-    /// Puts the segments of a line from `first` on into the buckets.
-    fn put_in(&mut self, line: usize, first: usize) {
-        for segment in first..self.lines[line].segments.len() {
-            let (a, b) = self.lines[line].segments[segment];
-            let listed = Listed { line: line as u32, segment: segment as u32, a, b };
+    /// Puts the segments of a line but those in `kept` into the buckets.
+    fn put_in(&mut self, line: usize, kept: Range<usize>) {
+        let of = &self.lines[line];
+        for index in (0..of.segments.len()).filter(|index| !kept.contains(index)) {
+            let (a, b) = of.segments[index];
+            let listed = Listed { line: line as u32, segment: of.number(index), a, b };
             for cell in self.cells_of((a, b)) {
                 let bucket = self.buckets.entry(cell).or_default();
                 bucket.insert(bucket.partition_point(|other| other.key() < listed.key()), listed);
@@ -355,12 +395,16 @@ impl Division {
         }
     }
 
-    /// Takes the segments of a line from `first` on out of the buckets.
-    fn take_out(&mut self, line: usize, first: usize) {
-        for segment in first..self.lines[line].segments.len() {
-            for cell in self.cells_of(self.lines[line].segments[segment]) {
+    /// Takes the segments of a line but those in `kept` out of the buckets.
+    fn take_out(&mut self, line: usize, kept: Range<usize>) {
+        let of = &self.lines[line];
+        for index in (0..of.segments.len()).filter(|index| !kept.contains(index)) {
+            let key = (line as u32, of.number(index));
+            for cell in self.cells_of(of.segments[index]) {
                 let Some(bucket) = self.buckets.get_mut(&cell) else { continue };
-                bucket.retain(|s| s.line as usize != line || (s.segment as usize) < first);
+                if let Ok(at) = bucket.binary_search_by_key(&key, Listed::key) {
+                    bucket.remove(at);
+                }
                 if bucket.is_empty() {
                     self.buckets.remove(&cell);
                 }
@@ -373,9 +417,10 @@ impl Division {
         self.buckets.get(&key).map_or(&[], Vec::as_slice)
     }
 
-    /// Distance within which [`Division::segments_around`] misses nothing [m].
-    pub(crate) fn surroundings(&self) -> f64 {
-        (self.reach + 1.0) * self.cell_size
+    /// Distance within which [`Division::segments_around`] misses nothing when it looks at so many cells `beside` that
+    /// of a point [m].
+    pub(crate) fn surroundings(&self, beside: u8) -> f64 {
+        (self.reach + f64::from(beside)) * self.cell_size
     }
 
     /// Within so far of a place where a crack leaves another one, along each axis [m], the two sides of the other one
@@ -385,16 +430,19 @@ impl Division {
     }
 
     /// Segments of a crack around `point`, rising: all within [`Division::surroundings`], some beside, and always the
-    /// first and the last one, whose ends may have moved on since the division was made.
-    pub(crate) fn segments_around(&self, crack: u32, point: Point) -> Vec<usize> {
-        let Some(index) = self.line_of(crack) else { return Vec::new() };
-        let Line { of, last, .. } = &self.lines[index];
-        let mut segments: Vec<usize> = vec![0, *last as usize];
-        for (i, j) in (-1..=1).flat_map(|i| (-1..=1).map(move |j| (i, j))) {
+    /// first and the last one, whose ends may have moved on since the division was made. `beside`: how many cells to
+    /// each side are looked at.
+    pub(crate) fn segments_around(&self, crack: u32, point: Point, beside: u8) -> SmallVec<[usize; 32]> {
+        let mut segments = SmallVec::new();
+        let Some(index) = self.line_of(crack) else { return segments };
+        let line = &self.lines[index];
+        segments.extend([0, line.last as usize]);
+        let cells = -i32::from(beside)..=i32::from(beside);
+        for (i, j) in cells.clone().flat_map(|i| cells.clone().map(move |j| (i, j))) {
             let bucket = self.bucket(point + Vector::new(f64::from(i), f64::from(j)) * self.cell_size);
             let first = bucket.partition_point(|s| (s.line as usize) < index);
             let own = bucket[first..].iter().take_while(|s| s.line as usize == index);
-            segments.extend(own.map(|s| of[s.segment as usize] as usize));
+            segments.extend(own.map(|s| line.of[line.index(s.segment)] as usize));
         }
         segments.sort_unstable();
         segments.dedup();
@@ -448,23 +496,24 @@ impl Division {
     /// nearest tip's: between tips that face each other both are there.
     pub(crate) fn split_square(&self, center: Point, half: f64, counts: impl Fn(u32) -> bool) -> Option<Split> {
         let is_part = |line: &Line, s: &Listed| {
-            matches!(line.kinds[s.segment as usize], SegmentKind::Real | SegmentKind::AheadOfTip)
+            matches!(line.kinds[line.index(s.segment)], SegmentKind::Real | SegmentKind::AheadOfTip)
                 && runs_through(center, half, (s.a, s.b))
         };
         let mut chosen: Option<(f64, Vec<(Point, Point)>)> = None;
         for of_line in self.bucket(center).chunk_by(|s, t| s.line == t.line) {
             let line = &self.lines[of_line[0].line as usize];
-            let within: Vec<u32> = of_line.iter().filter(|s| is_part(line, s)).map(|s| s.segment).collect();
+            let part = of_line.iter().filter(|s| is_part(line, s));
+            let within: Vec<usize> = part.map(|s| line.index(s.segment)).collect();
             if within.is_empty() || !counts(line.crack) {
                 continue;
             }
-            let is_real = within.iter().any(|&segment| line.kinds[segment as usize] == SegmentKind::Real);
+            let is_real = within.iter().any(|&k| line.kinds[k] == SegmentKind::Real);
             let to_tip = |tip: &TipRay| (tip.position - center).norm();
             let distance = if is_real { 0.0 } else { line.tips.iter().map(to_tip).fold(f64::INFINITY, f64::min) };
             match &chosen {
                 Some((nearest, _)) if is_real || *nearest == 0.0 => return None,
                 Some((nearest, _)) if *nearest <= distance => {}
-                _ => chosen = Some((distance, within.iter().map(|&k| line.segments[k as usize]).collect())),
+                _ => chosen = Some((distance, within.iter().map(|&k| line.segments[k]).collect())),
             }
         }
         Split::of_square(center, half, &chosen?.1)
@@ -495,8 +544,11 @@ impl Division {
 
     /// Whether any of `segments` is the continuation of a crack beyond the one that it ends on.
     fn has_continuation(&self, segments: &[Listed]) -> bool {
-        let kind = |s: &Listed| self.lines[s.line as usize].kinds[s.segment as usize];
-        segments.iter().any(|s| matches!(kind(s), SegmentKind::BeyondJunction(_)))
+        let is_continuation = |s: &Listed| {
+            let line = &self.lines[s.line as usize];
+            matches!(line.kinds[line.index(s.segment)], SegmentKind::BeyondJunction(_))
+        };
+        segments.iter().any(is_continuation)
     }
 
     fn shares(&self, particle: Point, node: Point, domain: f64) -> Shares {
@@ -625,7 +677,8 @@ fn prepare(line: &CrackLine, tip_division: TipDivision, cut: TipCut, cell_size: 
     let at_tip = at_tip.collect();
     let around_start = around_fork(reach, cell_size);
     let last = n as u32 - 2;
-    Line { crack: line.crack, segments, tips, cut, kinds, of, last, at_tip, has_junction, around_start }
+    let first_number = FIRST_NUMBER;
+    Line { crack: line.crack, segments, tips, cut, kinds, of, last, first_number, at_tip, has_junction, around_start }
 }
 
 fn around_fork(reach: f64, cell_size: f64) -> f64 {
@@ -639,8 +692,11 @@ fn near_tips(line: &CrackLine, within: f64) -> Vec<bool> {
     for (end, is_last) in [(line.start, false), (line.end, true)] {
         let mut way = 0.0;
         for j in (0..n).take_while(|_| end == LineEnd::Tip) {
+            if way >= within {
+                break;
+            }
             let k = if is_last { n - 1 - j } else { j };
-            near[k] |= way < within;
+            near[k] = true;
             way += (line.points[k + 1] - line.points[k]).norm();
         }
     }
@@ -806,6 +862,15 @@ mod tests {
                     prop_assert_eq!(around.pair(node), changed.pair(particle, node));
                 }
                 let fresh = division(&lines, TipDivision::PartlyCut, cut);
+                let [changed, fresh] = [&changed, &fresh].map(|of| {
+                    // Numbers depend on how a crack came to be where it is; what they stand for does not.
+                    let mut of = of.clone();
+                    for listed in of.buckets.values_mut().flatten() {
+                        listed.segment = of.lines[listed.line as usize].index(listed.segment) as u32;
+                    }
+                    of.lines.iter_mut().for_each(|line| line.first_number = 0);
+                    of
+                });
                 prop_assert_eq!(&changed.lines, &fresh.lines);
                 prop_assert_eq!(&changed.buckets, &fresh.buckets);
             }

@@ -205,12 +205,16 @@ impl Crack {
     pub(crate) fn points_as_cut(&self) -> Vec<Point> {
         let mut points = self.points.clone();
         let last = points.len() - 1;
-        for (end, at) in ENDS.into_iter().zip([0, last]) {
-            if let (CrackEnd::Tip, Some(place)) = (self.end(end), self.ways[slot(end)].cut_at) {
-                points[at] = place;
-            }
-        }
+        [points[0], points[last]] = self.ends_as_cut();
         points
+    }
+
+    /// The first and the last of [`Crack::points_as_cut`].
+    pub(crate) fn ends_as_cut(&self) -> [Point; 2] {
+        ENDS.map(|end| match (self.end(end), self.ways[slot(end)].cut_at) {
+            (CrackEnd::Tip, Some(place)) => place,
+            _ => self.tip_position(end),
+        })
     }
 
     /// Position of an end at rest [m].
@@ -329,12 +333,17 @@ impl Crack {
     /// The crack as the division sees it, its points being at `points` (rest or current); open ends go `beyond` [m]
     /// farther.
     pub(crate) fn line(&self, crack: usize, points: Vec<Point>, beyond: f64) -> CrackLine {
-        let end = |e: CrackEnd| match e {
+        let [start, end] = self.line_ends(beyond);
+        CrackLine { crack: crack as u32, points, start, end, trunk: Vec::new() }
+    }
+
+    /// Its ends as the division sees them; open ones go `beyond` [m] farther.
+    pub(crate) fn line_ends(&self, beyond: f64) -> [LineEnd; 2] {
+        self.ends.map(|end| match end {
             CrackEnd::Tip => LineEnd::Tip,
             CrackEnd::Mouth => LineEnd::Open(beyond),
             CrackEnd::Junction { crack } => LineEnd::Junction { crack, beyond },
-        };
-        CrackLine { crack: crack as u32, points, start: end(self.ends[0]), end: end(self.ends[1]), trunk: Vec::new() }
+        })
     }
 
     /// The record of a tip for a frame; `position` [m] and `direction` [rad] are the current ones, `interval` [s] the

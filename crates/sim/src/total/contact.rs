@@ -552,10 +552,12 @@ fn nearest_segment(
 ) -> usize {
     // Around a vertex both its segments are equally near, up to round-off: the first one counts.
     let clearly = 1e-9 * lattice.grid.cell_size;
-    let around = lattice.division.segments_around(crack, place);
-    let (distance, segment) = nearest_of(around.into_iter().filter(counts), line, place, clearly);
-    if distance < lattice.division.surroundings() - 2.0 * clearly {
-        return segment;
+    for beside in [0, 1] {
+        let around = lattice.division.segments_around(crack, place, beside);
+        let (distance, segment) = nearest_of(around.into_iter().filter(counts), line, place, clearly);
+        if distance < lattice.division.surroundings(beside) - 2.0 * clearly {
+            return segment;
+        }
     }
     // Ahead of a tip or beyond a mouth, where few nodes are, what is nearest may lie anywhere.
     nearest_of((0..line.points.len() - 1).filter(counts), line, place, clearly).1
@@ -652,7 +654,7 @@ mod tests {
             let total = Total::new(&scene, Arc::new(Particles::fill(&scene).unwrap()), &cracks).unwrap();
             let looks = |point: &MeetingPoint| {
                 let place = total.lattice.grid.position(point.node as usize);
-                total.lattice.division.segments_around(point.crack, place).len()
+                total.lattice.division.segments_around(point.crack, place, 1).len()
             };
             total.contacts.points.iter().map(looks).max().unwrap()
         });

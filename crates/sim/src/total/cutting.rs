@@ -124,35 +124,45 @@ impl Lattice {
             && self.particles.off_center(particle).is_none()
     }
 
-    /// Whether all four particles of a cell are there, whole, of one material and of the body that owns all its nodes,
-    /// which are two each from `rows` on; then its material.
-    fn whole_cell(&self, column: i32, row: i32, rows: [usize; 2]) -> Option<u32> {
+    /// The four particles of a cell, from its lower left one on, row by row; none where one is not there.
+    pub(super) fn particles_of_cell(&self, [column, row]: [i32; 2]) -> Option<[usize; 4]> {
         // Place of the cell's lower left particle on the particle lattice, which starts at a node.
         let base = (self.grid.origin - self.particles.anchor) / self.particles.spacing;
-        let (i0, j0) = (base.x.round() as i32 + 2 * column, base.y.round() as i32 + 2 * row);
-        let mut material = None;
-        let mut body = None;
-        for (i, j) in [(i0, j0), (i0 + 1, j0), (i0, j0 + 1), (i0 + 1, j0 + 1)] {
-            let p = self.particles.at([i, j])?;
-            if !self.is_whole(p) {
-                return None;
-            }
-            if *material.get_or_insert(self.particles.material[p]) != self.particles.material[p]
-                || *body.get_or_insert(self.particles.body[p]) != self.particles.body[p]
-            {
-                return None;
-            }
-        }
-        let body = body?;
-        let mut nodes = rows.into_iter().flat_map(|node| [node, node + 1]);
-        if nodes.any(|node| self.owners.guest(node, body).is_some()) {
+        let (i, j) = (base.x.round() as i32 + 2 * column, base.y.round() as i32 + 2 * row);
+        let at = |i, j| self.particles.at([i, j]);
+        Some([at(i, j)?, at(i + 1, j)?, at(i, j + 1)?, at(i + 1, j + 1)?])
+    }
+
+    /// Whether all four particles of a cell are there, whole, of one material and of the body that owns all its nodes,
+    /// which are two each from `rows` on; then its material.
+    fn whole_cell(&self, cell: [i32; 2], rows: [usize; 2]) -> Option<u32> {
+        let own = self.particles_of_cell(cell)?;
+        let (material, body) = (self.particles.material[own[0]], self.particles.body[own[0]]);
+        let is_alike = |&p: &usize| self.particles.material[p] == material && self.particles.body[p] == body;
+        if !own.iter().all(|&p| self.is_whole(p)) || !own.iter().all(is_alike) {
             return None;
         }
-        material
+        let mut nodes = rows.into_iter().flat_map(|node| [node, node + 1]);
+        let is_shared = nodes.any(|node| self.owners.guest(node, body).is_some());
+        (!is_shared).then_some(material)
+    }
+
+    /// Takes a cell out of its run, if it is in one and no longer whole. Whether it was.
+    pub(super) fn leave_run(&mut self, cell: [i32; 2]) -> bool {
+        let Some(rows) = Walker::new(&self.grid).rows(cell, 2) else { return false };
+        let Some(index) = self.grid.row_index(cell[1]) else { return false };
+        let runs = &self.layout.runs[index];
+        let Some(k) = runs.partition_point(|run| run.lower as usize <= rows[0]).checked_sub(1) else { return false };
+        if !runs[k].holds(rows[0]) || self.whole_cell(cell, [rows[0], rows[1]]).is_some() {
+            return false;
+        }
+        let left = runs[k].without(rows[0]);
+        self.layout.runs[index].splice(k..=k, left);
+        true
     }
 
     /// The runs of the cells above a row of nodes, which is given by its index.
-    pub(super) fn runs_of_row(&self, index: usize) -> Vec<Run> {
+    fn runs_of_row(&self, index: usize) -> Vec<Run> {
         let mut runs: Vec<Run> = Vec::new();
         if !self.has_rows() {
             return runs;
@@ -162,7 +172,7 @@ impl Lattice {
         for span in self.grid.spans_of_row(index) {
             for column in span.first..span.end - 1 {
                 let Some(rows) = walker.rows([column, row], 2) else { continue };
-                let Some(material) = self.whole_cell(column, row, [rows[0], rows[1]]) else { continue };
+                let Some(material) = self.whole_cell([column, row], [rows[0], rows[1]]) else { continue };
                 let [lower, upper] = [rows[0] as u32, rows[1] as u32];
                 match runs.last_mut() {
                     Some(run) if run.material == material && run.lower + run.count == lower => run.count += 1,
@@ -174,7 +184,7 @@ impl Lattice {
     }
 
     /// Particles on the general path in the cells above a row of nodes: those no run covers.
-    pub(super) fn cut_of_row(&self, index: usize, runs: &[Run]) -> Vec<usize> {
+    fn cut_of_row(&self, index: usize, runs: &[Run]) -> Vec<usize> {
         let row = self.grid.row(index).row;
         let mut walker = Walker::new(&self.grid);
         let mut is_covered = |column: i32| {

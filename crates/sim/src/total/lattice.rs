@@ -124,9 +124,8 @@ impl Lattice {
     /// Divides pairs by `cracks` from now on. Returns the boxes, from low to high corner [m], outside which particles
     /// are divided as they were.
     pub(super) fn set_cracks(&mut self, cracks: &Cracks) -> Vec<(Point, Point)> {
-        let reach = self.reach();
-        let lines = cracks.lines(|_, crack| crack.points_as_cut(), reach * self.grid.cell_size);
-        let boxes = self.division.set_lines(lines);
+        let reach = self.reach() * self.grid.cell_size;
+        let boxes = self.division.follow(cracks.len(), |index, before| cracks.changed_line(index, before, reach));
         self.body_of_crack.clear();
         self.body_of_crack.extend(cracks.iter().map(|crack| crack.body));
         boxes

@@ -29,24 +29,37 @@ impl Lattice {
             .map(|side| (0..crack.points.len()).map(|k| self.face_probe(crack, k, side)).collect())
     }
 
-    /// Probes of both faces of a crack that had those of `before`, which stay where nothing around them `has_changed`.
-    fn face_probes_after(&self, crack: &Crack, before: &mut Faces, has_changed: impl Fn(&Probe) -> bool) -> Faces {
+    /// Lays the probes of both faces of a crack anew at its new points and where something around them `has_changed`,
+    /// which it can only within `boxes`.
+    fn follow_faces(
+        &self,
+        crack: &Crack,
+        faces: &mut Faces,
+        boxes: &[(Point, Point)],
+        has_changed: impl Fn(&Probe) -> bool,
+    ) {
         let points = &crack.points;
         // Where nothing is known to have stayed, all is laid anew.
-        let shift = added_at_start(crack, before).unwrap_or(points.len());
-        let mut faces = Faces::default();
-        for (side, (new, old)) in [Side::Above, Side::Below].into_iter().zip(faces.iter_mut().zip(before)) {
-            new.extend((0..points.len()).map(|k| {
+        let Some(shift) = added_at_start(crack, faces) else {
+            *faces = self.face_probes(crack);
+            return;
+        };
+        let old = shift..shift + faces[0].len();
+        let is_in_box = |p: Point| boxes.iter().any(|(low, high)| p >= *low && p <= *high);
+        // Old ends may have moved, and with them which way is to the left of the points beside them.
+        let is_by_end = |k: usize| k < old.start + 2 || k + 2 >= old.end;
+        let suspects: Vec<usize> = old.clone().filter(|&k| is_by_end(k) || is_in_box(points[k])).collect();
+        for (side, face) in [Side::Above, Side::Below].into_iter().zip(faces) {
+            face.splice(0..0, (0..old.start).map(|k| self.face_probe(crack, k, side)));
+            face.extend((old.end..points.len()).map(|k| self.face_probe(crack, k, side)));
+            for &k in &suspects {
                 let nudged = self.nudged(crack, k, side);
-                match k.checked_sub(shift).and_then(|k| old.get_mut(k)) {
-                    Some(old) if old.rest == points[k] && old.nudged == nudged && !has_changed(old) => {
-                        Probe { entries: std::mem::take(&mut old.entries), ..*old }
-                    }
-                    _ => self.probe(crack.body, points[k], nudged),
+                let probe = &face[k];
+                if probe.rest != points[k] || probe.nudged != nudged || has_changed(probe) {
+                    face[k] = self.probe(crack.body, points[k], nudged);
                 }
-            }));
+            }
         }
-        faces
     }
 
     /// Probe of one face at point `k` of a crack.
@@ -153,11 +166,18 @@ impl Probes {
                 sees(probe.rest)
             }
         };
+        // A node that has turned is as far as a stencil from what has been cut anew, and seen from as far.
+        let reach = Vector::repeat(SEEN.max(2.0 * lattice.reach() + 2.0) * lattice.grid.cell_size);
+        let suspicious: Vec<(Point, Point)> = boxes.iter().map(|(low, high)| (low - reach, high + reach)).collect();
         for (index, crack) in cracks.iter().enumerate() {
-            if index >= self.faces.len() {
+            let Some(faces) = self.faces.get_mut(index) else {
                 self.faces.push(lattice.face_probes(crack));
-            } else if changed.iter().any(|id| id.crack == index) || crack.points.iter().any(|&p| sees(p)) {
-                self.faces[index] = lattice.face_probes_after(crack, &mut self.faces[index], has_changed);
+                continue;
+            };
+            let near: Vec<(Point, Point)> =
+                suspicious.iter().copied().filter(|(low, high)| crack.may_meet(*low, *high)).collect();
+            if !near.is_empty() || changed.iter().any(|id| id.crack == index) {
+                lattice.follow_faces(crack, faces, &near, has_changed);
             }
         }
         for probe in self.outlines.vertices_mut().filter(|probe| within(probe.rest)) {

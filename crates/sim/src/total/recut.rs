@@ -79,20 +79,13 @@ impl Lattice {
         affected.sort_unstable();
         affected.dedup();
         // Cells that were whole leave their run; all their particles go on the general path.
-        let mut rows: Vec<usize> =
-            affected.iter().filter_map(|&p| self.grid.row_index(self.grid.cell(self.particles.rest[p])[1])).collect();
-        rows.dedup();
-        rows.sort_unstable();
-        rows.dedup();
-        for row in rows {
-            let runs = self.runs_of_row(row);
-            if runs != self.layout.runs[row] {
-                for p in self.cut_of_row(row, &runs) {
-                    if self.layout.cut.entries_of(p).is_none() {
-                        affected.push(p);
-                    }
-                }
-                self.layout.runs[row] = runs;
+        let mut cells: Vec<[i32; 2]> = affected.iter().map(|&p| self.grid.cell(self.particles.rest[p])).collect();
+        cells.sort_unstable();
+        cells.dedup();
+        for cell in cells {
+            if self.leave_run(cell) {
+                let own = self.particles_of_cell(cell).into_iter().flatten();
+                affected.extend(own.filter(|&p| self.layout.cut.entries_of(p).is_none()));
             }
         }
         affected.sort_unstable();

@@ -31,4 +31,13 @@ impl Run {
     pub(super) fn holds(&self, node: usize) -> bool {
         (self.lower as usize..(self.lower + self.count) as usize).contains(&node)
     }
+
+    /// What is left to both sides of the cell with the lower left node `node`, which it holds.
+    pub(super) fn without(&self, node: usize) -> impl Iterator<Item = Self> + use<> {
+        let before = node as u32 - self.lower;
+        let after = before + 1;
+        let first = Self { count: before, ..*self };
+        let second = Self { lower: self.lower + after, upper: self.upper + after, count: self.count - after, ..*self };
+        [first, second].into_iter().filter(|run| run.count > 0)
+    }
 }
