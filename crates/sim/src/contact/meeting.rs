@@ -1,7 +1,7 @@
 //! The edge that a vertex comes to, the gap between them and the normal.
 
 use super::neighbours::Neighbour;
-use super::surface::Surface;
+use super::surface::{Surface, looks};
 use fissure_plane::{Point, Vector};
 
 /// A vertex that passes the end of an edge by less than this part of it is still above it: the corners of two things
@@ -44,31 +44,33 @@ pub(crate) fn meeting(
     cell_size: f64,
 ) -> Option<Meeting> {
     let x = place[vertex as usize];
+    let own_normals = surface.normals_around(vertex, place);
     let mut nearest = (f64::INFINITY, None);
     for neighbour in near {
         let Some(next) = surface.next(neighbour.edge) else { continue };
-        let Some(flat) = surface.edge_normal(neighbour.edge, place) else { continue };
         let (a, b) = (place[neighbour.edge as usize], place[next as usize]);
-        let along = (x - a).dot(&(b - a)) / (b - a).norm_squared();
-        let is_beyond = !(-PAST_END..=1.0 + PAST_END).contains(&along);
-        let end = if along < 0.5 { neighbour.edge } else { next };
+        let beside = (x - a).dot(&(b - a)) / (b - a).norm_squared();
+        let along = beside.clamp(0.0, 1.0);
+        let away = x - (a + (b - a) * along);
+        let distance = away.norm();
+        // Most are farther than one before, or too far to be met at all.
+        if distance >= nearest.0 || distance > WIDEST * cell_size {
+            continue;
+        }
+        let Some(flat) = surface.edge_normal(neighbour.edge, place) else { continue };
+        let is_beyond = !(-PAST_END..=1.0 + PAST_END).contains(&beside);
+        let end = if beside < 0.5 { neighbour.edge } else { next };
         if is_beyond && !surface.faces(end, x, place) {
             continue;
         }
-        let along = along.clamp(0.0, 1.0);
-        let away = x - (a + (b - a) * along);
         // Where flat sides lie on each other, a vertex of one that is just beyond the corner of the other is beside it.
         let out = if is_beyond && away.dot(&flat) >= 0.0 { away.try_normalize(0.0).unwrap_or(flat) } else { flat };
-        if !surface.looks(vertex, -out, place) {
-            continue;
-        }
-        let distance = away.norm();
-        if distance < nearest.0 {
+        if looks(own_normals, -out) && distance < nearest.0 {
             nearest = (distance, Some((neighbour, next, flat, along, is_beyond)));
         }
     }
     let (neighbour, next, flat, along, is_beyond) = nearest.1?;
-    if !neighbour.can_touch || nearest.0 > WIDEST * cell_size {
+    if !neighbour.can_touch {
         return None;
     }
     let ends = [neighbour.edge, next];

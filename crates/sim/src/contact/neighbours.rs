@@ -61,11 +61,13 @@ impl Neighbours {
             let faces = |edge: &u32| edge_normals[*edge as usize].is_some_and(|n| n.dot(&normal) < MAY_FACE);
             near.clear();
             near.extend(around.edges(x).filter(faces).filter(|&edge| search.is_near(vertex, edge)));
-            if !near.iter().any(|&edge| !search.stays(vertex, edge) && search.can_touch(vertex, edge)) {
+            near.sort_unstable();
+            let first = found.edges.len();
+            found.edges.extend(near.iter().map(|&edge| Neighbour { edge, can_touch: search.can_touch(vertex, edge) }));
+            if !found.edges[first..].iter().any(|near| near.can_touch && !search.stays(vertex, near.edge)) {
+                found.edges.truncate(first);
                 continue;
             }
-            near.sort_unstable();
-            found.edges.extend(near.iter().map(|&edge| Neighbour { edge, can_touch: search.can_touch(vertex, edge) }));
             found.vertices.push(vertex);
             found.first.push(found.edges.len() as u32);
         }

@@ -93,7 +93,7 @@ impl Surface {
     }
 
     /// Outward normals of the edges before and after a vertex.
-    fn normals_around(&self, vertex: u32, place: &[Point]) -> [Option<Vector>; 2] {
+    pub(crate) fn normals_around(&self, vertex: u32, place: &[Point]) -> [Option<Vector>; 2] {
         [self.previous(vertex).and_then(|edge| self.edge_normal(edge, place)), self.edge_normal(vertex, place)]
     }
 
@@ -109,17 +109,6 @@ impl Surface {
         if before.dot(&after) >= ROUND { (before + after).try_normalize(0.0) } else { None }
     }
 
-    /// Whether the material ends at a vertex towards `direction` (a unit vector): within [`LOOKS`] of the normals of
-    /// its edges or, at a corner, between them.
-    pub(crate) fn looks(&self, vertex: u32, direction: Vector, place: &[Point]) -> bool {
-        let normals = self.normals_around(vertex, place);
-        let between = match normals {
-            [Some(before), Some(after)] => before.perp(&direction) > 0.0 && direction.perp(&after) > 0.0,
-            _ => false,
-        };
-        between || normals.into_iter().flatten().any(|normal| normal.dot(&direction) > LOOKS)
-    }
-
     /// Whether of all places of the surface around a vertex the vertex is the nearest to `point`.
     pub(crate) fn faces(&self, vertex: u32, point: Point, place: &[Point]) -> bool {
         let (Some(previous), Some(next)) = (self.previous(vertex), self.next(vertex)) else { return false };
@@ -127,4 +116,14 @@ impl Surface {
         let away = point - at;
         away.dot(&(at - place[previous as usize])) >= 0.0 && away.dot(&(place[next as usize] - at)) <= 0.0
     }
+}
+
+/// Whether the material ends towards `direction` (a unit vector) at a vertex with `normals` before and after it: within
+/// [`LOOKS`] of these or, at a corner, between them.
+pub(crate) fn looks(normals: [Option<Vector>; 2], direction: Vector) -> bool {
+    let between = match normals {
+        [Some(before), Some(after)] => before.perp(&direction) > 0.0 && direction.perp(&after) > 0.0,
+        _ => false,
+    };
+    between || normals.into_iter().flatten().any(|normal| normal.dot(&direction) > LOOKS)
 }

@@ -33,6 +33,7 @@ mod recut;
 mod riders;
 mod rows;
 mod run;
+mod segment_normals;
 mod snapshot;
 mod stability;
 mod stiffening;
