@@ -123,6 +123,12 @@ pub(crate) trait Observed {
         None
     }
 
+    /// The largest distance by which the two sides of a node around a tip have come apart [m]; none where that is not
+    /// known.
+    fn parted_at_tip(&self, _id: TipId) -> Option<f64> {
+        None
+    }
+
     /// Current position of a tip [m] and the current direction ahead of it (unit vector).
     fn tip_now(&self, cracks: &Cracks, id: TipId) -> (Point, Vector);
 }

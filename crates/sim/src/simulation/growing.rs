@@ -37,8 +37,8 @@ const FAR_FROM_GROWTH: f64 = 0.7;
 /// them, half a radius of the integral.
 const STEPS_BETWEEN_LOOKS: u32 = 4;
 
-/// A resting tip whose K_eq was below this part of the toughness when it was measured last is asked for J first, which
-/// is half of a look: modes that share it make K_eq at most 1.3 times that of mode I.
+/// A resting tip whose K_eq was below this part of the toughness when it was measured last is asked first for what
+/// costs less than a look and says that it is far from growth still.
 const ASKS_J: f64 = 0.45;
 
 /// Tips nearer to each other than this, in cells, may meet within an increment.
@@ -95,9 +95,7 @@ impl Simulation {
             stages.enter(Stage::Looks);
             for &id in &live {
                 let toughness = if spares { tough_at_rest(cracks, id, scene) } else { None };
-                if toughness
-                    .is_some_and(|toughness| gauge.highest_equivalent(moment, cracks, id) < FAR_FROM_GROWTH * toughness)
-                {
+                if toughness.is_some_and(|toughness| gauge.is_below(moment, cracks, id, FAR_FROM_GROWTH * toughness)) {
                     assessed.push(None);
                     continue;
                 }

@@ -8,6 +8,7 @@ use super::pressure::Pressed;
 use super::probe::Probe;
 use super::probes::Probes;
 use super::reader::ParticleRates;
+use super::ties::Ties;
 use crate::crack::DIRECTION_LENGTH;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::crossing::Side;
@@ -27,6 +28,8 @@ pub(super) struct Look<'a> {
     pub(super) motion: &'a Motion,
     /// Outlines and faces.
     pub(super) probes: &'a Probes,
+    /// What holds nodes around tips together.
+    pub(super) ties: &'a Ties,
     /// What faces do to each other.
     pub(super) contacts: &'a Contacts,
     /// What presses on faces.
@@ -95,6 +98,10 @@ impl Observed for Look<'_> {
         }
         let points = self.points_around(cracks, id, radius, |_, _| Side::Above).0;
         Some(TipZone { points, follows_line: true, ..TipZone::default() })
+    }
+
+    fn parted_at_tip(&self, id: TipId) -> Option<f64> {
+        self.ties.parted(&self.motion.displacement, id)
     }
 
     fn tip_now(&self, cracks: &Cracks, id: TipId) -> (Point, Vector) {

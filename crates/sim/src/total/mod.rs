@@ -193,8 +193,8 @@ impl Total {
 
     /// A moment at which velocities are ahead by `half_step` [s].
     fn look(&self, half_step: f64) -> Look<'_> {
-        let Self { lattice, motion, probes, contacts, loads, .. } = self;
-        Look { lattice, motion, probes, contacts, loads, half_step }
+        let Self { lattice, motion, probes, ties, contacts, loads, .. } = self;
+        Look { lattice, motion, probes, ties, contacts, loads, half_step }
     }
 
     /// Surfaces that touch, at the time `middle` [s] of a step. Whether any is near enough.

@@ -85,6 +85,11 @@ impl Ties {
         }
     }
 
+    /// The largest opening of a tie of a tip for the displacement `u` [m]; none where it has none.
+    pub(super) fn parted(&self, u: &FieldVectors, id: TipId) -> Option<f64> {
+        self.of_tip.get(&id)?.iter().map(|tie| tie.opening(u).norm()).reduce(f64::max)
+    }
+
     /// Elastic energy for the displacement `u` [J/m].
     pub(super) fn energy(&self, u: &FieldVectors) -> f64 {
         self.all().map(|tie| tie.energy(u)).sum()
