@@ -3,7 +3,9 @@
 use super::lattice::Lattice;
 use super::motion::Motion;
 use super::near::Near;
+use super::ties::Ties;
 use crate::boundary::collider::Obstacle;
+use crate::boundary::constraints::Inertia;
 use fissure_plane::{Matrix, Point, Vector};
 use fissure_scene::Scene;
 use std::collections::BTreeMap;
@@ -136,8 +138,13 @@ impl Colliders {
 
     /// Keeps the surface out of the obstacles where they are at the time `time` [s]. `gain`:
     /// [`super::motion::force_of_impulse`].
-    pub(super) fn apply(&self, time: f64, gain: f64, lattice: &Lattice, motion: &mut Motion) -> CollisionWork {
-        let mass = lattice.mass();
+    pub(super) fn apply(
+        &self,
+        time: f64,
+        gain: f64,
+        (lattice, ties): (&Lattice, &Ties),
+        motion: &mut Motion,
+    ) -> CollisionWork {
         let mut work = CollisionWork::default();
         for obstacle in &self.obstacles {
             let placed = obstacle.at(time);
@@ -168,11 +175,25 @@ impl Colliders {
                 } else {
                     placed.resolve(before, skin)
                 };
-                let impulse = (after - before) * mass[d];
+                if after == before {
+                    continue;
+                }
+                // A field that is tied to others takes them along.
+                let inertia = ties.inertia_at(lattice.fields().node(d), &lattice.inverse_mass);
+                let mut own = 0.0;
+                inertia.response(node.field, &mut |moved, response| {
+                    own += if moved == node.field { response } else { 0.0 }
+                });
+                let impulse = (after - before) / own;
                 let before_kick = Vector::new(motion.before_kick()[0][d], motion.before_kick()[1][d]);
                 let of_motion = impulse.dot(&placed.velocity(place));
                 work.of_motion += of_motion;
                 work.beyond += 0.5 * gain * impulse.dot(&(before_kick + after)) - of_motion;
+                inertia.response(node.field, &mut |moved, response| {
+                    for axis in 0..2 {
+                        motion.velocity[axis][moved as usize] += response * impulse[axis];
+                    }
+                });
                 motion.velocity[0][d] = after.x;
                 motion.velocity[1][d] = after.y;
             }

@@ -224,7 +224,7 @@ impl Total {
     fn apply_boundaries(&mut self, middle: f64, time_step: f64, kick: f64) {
         self.apply_supports(middle, time_step, kick);
         let gain = motion::force_of_impulse(self.damping, kick);
-        let work = self.colliders.apply(middle, gain, &self.lattice, &mut self.motion);
+        let work = self.colliders.apply(middle, gain, (&self.lattice, &self.ties), &mut self.motion);
         self.external_work += work.of_motion;
         self.collision_work += work.beyond;
     }

@@ -118,6 +118,15 @@ impl Ties {
         TiedInertia { inverse_mass, groups: self.at_node.values().flat_map(places).collect() }
     }
 
+    /// As [`Ties::inertia`], for the fields of one node.
+    pub(super) fn inertia_at<'a>(&'a self, node: usize, inverse_mass: &'a [f64]) -> TiedInertia<'a> {
+        let group = self.at_node.get(&(node as u32));
+        let places = group
+            .into_iter()
+            .flat_map(|group| group.fields.iter().enumerate().map(move |(k, &field)| (field, (group, k))));
+        TiedInertia { inverse_mass, groups: places.collect() }
+    }
+
     /// The fields that ties couple at these nodes.
     fn fields_at<'a>(&'a self, nodes: impl IntoIterator<Item = &'a u32> + 'a) -> impl Iterator<Item = u32> + 'a {
         nodes.into_iter().filter_map(|node| self.at_node.get(node)).flat_map(|group| group.fields.iter().copied())
