@@ -36,8 +36,8 @@ use std::collections::BTreeMap;
 
 /// Overlaps of fragments that are at most so wide in the mean are inaccuracies of contact, in cells: faces that press
 /// on each other sink in by up to a tenth of a cell, what has no particle of its own by some more, and shards of a few
-/// particles, driven into each other by others, by up to .58 (`glass-impact`). The grid feels a contact within a cell.
-const WIDEST_OVERLAP: f64 = 0.8;
+/// particles, driven into each other by others, by up to .36 (`glass-impact`).
+const WIDEST_OVERLAP: f64 = 0.4;
 
 /// What an edge may become shorter by as its ends go to the grid, in grid steps.
 const ROUNDING: f64 = 3.0;

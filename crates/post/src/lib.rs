@@ -31,7 +31,7 @@
 //!
 //! Promised: every solid that is returned has passed the check, and each fragment that holds a particle is one solid in
 //! every frame, unless `smallest_fragment` leaves it out. Not promised: that solids stay apart that the simulation lets
-//! overlap by more than .8 cells in the mean; openings below two grid steps (4e-6 m in a body of 20 m) may
+//! overlap by more than .4 cells in the mean; openings below two grid steps (4e-6 m in a body of 20 m) may
 //! be shown closed.
 
 #[cfg(test)]
