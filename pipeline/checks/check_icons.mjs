@@ -10,7 +10,7 @@
 // within 0.5 % of what resvg paints. Run it from the folder with node_modules; python is taken from venv/ there if any.
 
 import { execFile } from "node:child_process";
-import { existsSync, mkdtempSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
+import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join, resolve } from "node:path";
 import { promisify } from "node:util";
@@ -184,4 +184,9 @@ process.stdout.write(watertight.stdout ?? "");
 process.stderr.write(watertight.stderr ?? "");
 
 const fine = refusals.length <= (1 - LOADED_SHARE) * icons.length && problems.length === 0 && !watertight.code;
+if (fine) {
+    rmSync(folder, { recursive: true });
+} else {
+    console.error(`what was made is in ${folder}`);
+}
 process.exit(fine ? 0 : 1);

@@ -91,8 +91,9 @@ fn figure(charting: &Charting<'_>, table: &Table<'_>) -> Figure {
     Figure {
         title: "How fast, at what size, with how many cracks".into(),
         caption: vec![
-            "Total formulation, a plate pulled at two sides. Cracks at rest are measured as often as in any run; growing \
-             ones are weak and run all the time. Flaws are four cells long, so with few particles there is no room for them. \
+            "Total formulation, a plate pulled at two sides. Cracks at rest are as tough as can be, so that hardly any look \
+             is taken at them; growing ones are weak and run all the time. Flaws are four cells long, so with few particles \
+             there is no room for them. \
              The memory is what `fissure check` says: frames on their way to disk and meshes included."
                 .into(),
             charting.origin.to_string(),
