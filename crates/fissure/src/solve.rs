@@ -132,6 +132,11 @@ fn last_frame(scene: &Scene, frames: Option<&FrameSet>) -> Result<i64, Failure> 
 }
 
 impl Solve {
+    /// The present frame, as the take holds it.
+    fn frame(&self) -> Frame {
+        self.writer.held(self.simulation.frame_of(|frame| self.writer.chosen(frame)))
+    }
+
     /// The first frame that will be handed on.
     pub(crate) fn first_new_frame(&self) -> i64 {
         if self.fresh { self.newest } else { self.newest + 1 }
@@ -149,7 +154,7 @@ impl Solve {
     ) -> Result<Outcome, Failure> {
         interrupt.finish_cleanly();
         let mut progress = SimulationProgress::new(report, self.newest, self.last);
-        let frame = self.writer.held(self.simulation.frame());
+        let frame = self.frame();
         // The state at the newest frame: what goes on after an interrupt in the middle of the next.
         let mut state = self.simulation.save()?;
         // A frame that is there already is held against what was restored.
@@ -174,7 +179,7 @@ impl Solve {
                 self.writer.write_state(&state, self.newest)?;
                 return goes_on.map(|_| Outcome::Interrupted).map_err(Failure::from);
             }
-            let frame = self.writer.held(self.simulation.frame());
+            let frame = self.frame();
             if self.simulation.formulation() != formulation {
                 formulation = self.simulation.formulation();
                 progress.note(&format!(
@@ -182,6 +187,8 @@ impl Solve {
                     frame.number
                 ));
             }
+            // The one before is of no use any more, and large.
+            drop(std::mem::take(&mut state));
             state = self.simulation.save()?;
             // At the end too: the take is then the same whether and when states were written on the way.
             let due = frame.number == self.last || state_written.elapsed() >= STATE_INTERVAL;

@@ -66,6 +66,8 @@ fn a_limit_of_the_shell_is_kept() {
 #[test]
 fn the_memory_that_is_told_is_taken() {
     let crack = "[[crack]]\nname = \"c\"\nline = [[-0.1, 0.503], [0.6, 0.713]]\n";
+    let surface = "[take]\nparticles = \"surface\"\n";
+    let none = "[take]\nparticles = \"none\"\n";
     let collider = "[[collider]]\nname = \"floor\"\nshape = { half_plane = { point = [0.0, -1.0] } }\n";
     for (formulation, spacing, more) in [
         ("total", 0.01, ""),
@@ -74,6 +76,9 @@ fn the_memory_that_is_told_is_taken() {
         ("total", 0.005, crack),
         ("updated", 0.005, crack),
         ("total", 0.005, collider),
+        ("total", 0.002, surface),
+        ("total", 0.002, none),
+        ("updated", 0.002, none),
     ] {
         let folder = folder_with("scene.toml", &plate(formulation, spacing, more));
         let Output { stdout, stderr, .. } = run(folder.path(), &["check", "scene.toml", "--log", "json"]);

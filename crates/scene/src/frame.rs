@@ -55,6 +55,25 @@ impl ParticleFrame {
         self.id.len()
     }
 
+    /// The particles with these numbers, in this order. Of what the frame does not have of its particles, such as how
+    /// they move, it has nothing either.
+    pub fn chosen(&self, numbers: &[usize]) -> Self {
+        fn of<T: Copy>(values: &[T], numbers: &[usize]) -> Vec<T> {
+            if values.is_empty() { Vec::new() } else { numbers.iter().map(|&p| values[p]).collect() }
+        }
+        Self {
+            id: of(&self.id, numbers),
+            body: of(&self.body, numbers),
+            piece: of(&self.piece, numbers),
+            rest: of(&self.rest, numbers),
+            mass: self.mass.as_ref().map(|mass| of(mass, numbers)),
+            position: of(&self.position, numbers),
+            velocity: of(&self.velocity, numbers),
+            deformation_gradient: of(&self.deformation_gradient, numbers),
+            cauchy_stress: of(&self.cauchy_stress, numbers),
+        }
+    }
+
     /// Whether there are no particles.
     pub fn is_empty(&self) -> bool {
         self.id.is_empty()

@@ -6,6 +6,8 @@ use crate::grid::coverage::Cover;
 use crate::grid::scan::Places;
 use crate::grid::spans::{Span, SpanRows};
 use crate::loose;
+use crate::solver::Snapshot;
+use crate::threads;
 use fissure_plane::{Matrix, Point, Vector, bounds};
 use fissure_scene::{KeyPath, ParticleFrame, Scene, SceneFault, Selection};
 use std::collections::BTreeMap;
@@ -38,6 +40,9 @@ pub(crate) struct Particles {
 
 /// The least volume of a particle, in s²: that of one in a corner so sharp that next to nothing is there.
 const LEAST_VOLUME: f64 = 1e-3;
+
+/// Particles whose motion is on its way into a frame at once: few beside the frame, many enough to share out.
+const AT_ONCE: usize = 1 << 17;
 
 /// More places than this along an axis are not counted.
 const MOST_PLACES: f64 = (1 << 30) as f64;
@@ -196,28 +201,45 @@ impl Particles {
         self.within([first.x, first.y], [last.x, last.y])
     }
 
-    /// The particles as a frame holds them, pieces left 0; `now` tells of each particle how it is.
-    pub(crate) fn frame(&self, mut now: impl FnMut(usize) -> ParticleNow) -> ParticleFrame {
-        let n = self.len();
-        let mut frame = ParticleFrame {
-            id: (0..n as u32).collect(),
+    /// The particles as a frame holds them, pieces left 0, without how they move: see [`Particles::add_motions`].
+    pub(crate) fn frame_at_rest(&self) -> ParticleFrame {
+        ParticleFrame {
+            id: (0..self.len() as u32).collect(),
             body: self.body.clone(),
-            piece: vec![0; n],
+            piece: vec![0; self.len()],
             rest: self.rest.clone(),
             mass: Some(self.mass.clone()),
-            position: Vec::with_capacity(n),
-            velocity: Vec::with_capacity(n),
-            deformation_gradient: Vec::with_capacity(n),
-            cauchy_stress: Vec::with_capacity(n),
-        };
-        for p in 0..n {
-            let ParticleNow { position, velocity, gradient, cauchy_stress } = now(p);
-            frame.position.push(position);
-            frame.velocity.push(velocity);
-            frame.deformation_gradient.push(Matrix::identity() + gradient);
-            frame.cauchy_stress.push(cauchy_stress);
+            ..ParticleFrame::default()
         }
+    }
+
+    /// The particles as a frame holds them, pieces left 0, moving as `solver` says.
+    pub(crate) fn frame(&self, solver: &(impl Snapshot + ?Sized)) -> ParticleFrame {
+        let mut frame = self.frame_at_rest();
+        solver.add_motions(&mut frame);
         frame
+    }
+
+    /// Adds to `frame`, which has what some particles are at rest, how these move: `now` tells of particles, by their
+    /// numbers, how they are.
+    pub(crate) fn add_motions(
+        frame: &mut ParticleFrame,
+        now: impl Fn(&mut dyn Iterator<Item = usize>) -> Vec<ParticleNow> + Sync,
+    ) {
+        let ParticleFrame { id, position, velocity, deformation_gradient, cauchy_stress, .. } = frame;
+        position.reserve_exact(id.len());
+        velocity.reserve_exact(id.len());
+        deformation_gradient.reserve_exact(id.len());
+        cauchy_stress.reserve_exact(id.len());
+        for many in id.chunks(AT_ONCE) {
+            let of_block = |block: Range<usize>| now(&mut many[block].iter().map(|&p| p as usize));
+            for now in threads::ranges(many.len(), of_block).into_iter().flatten() {
+                position.push(now.position);
+                velocity.push(now.velocity);
+                deformation_gradient.push(Matrix::identity() + now.gradient);
+                cauchy_stress.push(now.cauchy_stress);
+            }
+        }
     }
 
     /// Number of particles.

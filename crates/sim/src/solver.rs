@@ -64,8 +64,8 @@ pub(crate) trait Solver: Snapshot + Observed + std::fmt::Debug + Send {
 
 /// What can be read from a solver between two steps.
 pub(crate) trait Snapshot {
-    /// The particles as a frame holds them (fragments left 0).
-    fn particle_frame(&self) -> ParticleFrame;
+    /// Adds to `frame`, which has what some particles are at rest, how these move.
+    fn add_motions(&self, frame: &mut ParticleFrame);
 
     /// The rings of all bodies.
     fn outline_frames(&self) -> Vec<OutlineFrame>;

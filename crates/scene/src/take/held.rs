@@ -6,13 +6,18 @@ use crate::take_settings::{HeldParticles, Precision, TakeSettings};
 use fissure_plane::{Matrix, Point, Vector, distance_to_segment};
 use std::collections::HashMap;
 
-/// What a take holds of a frame of a scene with cells of `cell_size` [m]: the frame as it will be read.
-pub(super) fn held(mut frame: Frame, settings: TakeSettings, cell_size: f64) -> Frame {
+/// The particles that a take holds of a frame of a scene with cells of `cell_size` [m], rising; none: all. How they
+/// move does not matter.
+pub(super) fn chosen(frame: &Frame, settings: TakeSettings, cell_size: f64) -> Option<Vec<usize>> {
     match settings.particles {
-        HeldParticles::Full => {}
-        HeldParticles::Surface => frame.particles = chosen(&frame.particles, &at_surfaces(&frame, cell_size)),
-        HeldParticles::None => frame.particles = chosen(&frame.particles, &witnesses(&frame)),
+        HeldParticles::Full => None,
+        HeldParticles::Surface => Some(at_surfaces(frame, cell_size)),
+        HeldParticles::None => Some(witnesses(frame)),
     }
+}
+
+/// A frame of [`chosen`] particles as it will be read.
+pub(super) fn rounded(mut frame: Frame, settings: TakeSettings) -> Frame {
     if settings.precision == Precision::Single {
         round(&mut frame.particles);
     }
@@ -40,49 +45,36 @@ fn witnesses(frame: &Frame) -> Vec<usize> {
 fn at_surfaces(frame: &Frame, reach: f64) -> Vec<usize> {
     let particles = &frame.particles;
     let bin_of = |place: Point| [place.x, place.y].map(|x| (x / reach).floor() as i64);
-    let mut bins = HashMap::<[i64; 2], Vec<usize>>::new();
-    for (p, &place) in particles.rest.iter().enumerate() {
-        bins.entry(bin_of(place)).or_default().push(p);
+    let mut edges: Vec<(u32, Point, Point)> = Vec::new();
+    for ring in &frame.outlines {
+        let next = ring.rest.iter().cycle().skip(1);
+        edges.extend(ring.rest.iter().zip(next).map(|(&a, &b)| (ring.body, a, b)));
     }
-    let mut is_near = vec![false; particles.len()];
-    let mut mark = |body: u32, a: Point, b: Point| {
-        // In parts no longer than a bin, so that a long edge looks into the bins along it only.
+    for crack in &frame.cracks {
+        edges.extend(crack.rest.windows(2).map(|ends| (crack.body, ends[0], ends[1])));
+    }
+    // The edges that may be within reach of a place in each bin.
+    let mut bins = HashMap::<[i64; 2], Vec<usize>>::new();
+    for (edge, &(_, a, b)) in edges.iter().enumerate() {
+        // In parts no longer than a bin, so that a long edge is in the bins along it only.
         let parts = ((b - a).norm() / reach).ceil().max(1.0);
         for part in 0..parts as usize {
             let middle = a + (b - a) * ((part as f64 + 0.5) / parts);
             let [column, row] = bin_of(middle);
-            let around = (-2..=2).flat_map(|i| (-2..=2).map(move |j| [column + i, row + j]));
-            for &p in around.filter_map(|bin| bins.get(&bin)).flatten() {
-                is_near[p] |= particles.body[p] == body && distance_to_segment(particles.rest[p], a, b) <= reach;
+            for bin in (-2..=2).flat_map(|i| (-2..=2).map(move |j| [column + i, row + j])) {
+                let of_bin = bins.entry(bin).or_default();
+                if of_bin.last() != Some(&edge) {
+                    of_bin.push(edge);
+                }
             }
         }
+    }
+    let is_near = |&p: &usize| {
+        let (place, body) = (particles.rest[p], particles.body[p]);
+        let mut near = bins.get(&bin_of(place)).into_iter().flatten().map(|&edge| edges[edge]);
+        near.any(|(of, a, b)| of == body && distance_to_segment(place, a, b) <= reach)
     };
-    for ring in &frame.outlines {
-        let next = ring.rest.iter().cycle().skip(1);
-        ring.rest.iter().zip(next).for_each(|(&a, &b)| mark(ring.body, a, b));
-    }
-    for crack in &frame.cracks {
-        crack.rest.windows(2).for_each(|ends| mark(crack.body, ends[0], ends[1]));
-    }
-    (0..is_near.len()).filter(|&p| is_near[p]).collect()
-}
-
-/// The particles with these numbers, in this order.
-fn chosen(particles: &ParticleFrame, numbers: &[usize]) -> ParticleFrame {
-    fn of<T: Copy>(values: &[T], numbers: &[usize]) -> Vec<T> {
-        numbers.iter().map(|&p| values[p]).collect()
-    }
-    ParticleFrame {
-        id: of(&particles.id, numbers),
-        body: of(&particles.body, numbers),
-        piece: of(&particles.piece, numbers),
-        rest: of(&particles.rest, numbers),
-        mass: particles.mass.as_ref().map(|mass| of(mass, numbers)),
-        position: of(&particles.position, numbers),
-        velocity: of(&particles.velocity, numbers),
-        deformation_gradient: of(&particles.deformation_gradient, numbers),
-        cauchy_stress: of(&particles.cauchy_stress, numbers),
-    }
+    (0..particles.len()).filter(is_near).collect()
 }
 
 /// Rounds what moves to single precision.
@@ -152,7 +144,12 @@ mod tests {
     }
 
     fn held_as(particles: HeldParticles, frame: &Frame, cell_size: f64) -> Frame {
-        held(frame.clone(), TakeSettings { particles, precision: Precision::Double }, cell_size)
+        let settings = TakeSettings { particles, precision: Precision::Double };
+        let mut held = frame.clone();
+        if let Some(chosen) = chosen(frame, settings, cell_size) {
+            held.particles = held.particles.chosen(&chosen);
+        }
+        held
     }
 
     proptest! {
@@ -186,12 +183,12 @@ mod tests {
     fn single_precision_rounds_what_moves() {
         let frame = square(7, 0.3, |_| 0);
         let settings = TakeSettings { particles: HeldParticles::Full, precision: Precision::Single };
-        let rounded = held(frame.clone(), settings, 0.1);
-        assert_eq!((&rounded.outlines, &rounded.particles.rest), (&frame.outlines, &frame.particles.rest));
-        for (single, double) in rounded.particles.position.iter().zip(&frame.particles.position) {
+        let found = rounded(frame.clone(), settings);
+        assert_eq!((&found.outlines, &found.particles.rest), (&frame.outlines, &frame.particles.rest));
+        for (single, double) in found.particles.position.iter().zip(&frame.particles.position) {
             assert!((single - double).amax() <= 2_f64.powi(-25), "{single} {double}");
         }
-        assert_ne!(rounded.particles.position, frame.particles.position);
-        assert_eq!(held(rounded.clone(), settings, 0.1), rounded);
+        assert_ne!(found.particles.position, frame.particles.position);
+        assert_eq!(rounded(found.clone(), settings), found);
     }
 }

@@ -1,6 +1,6 @@
 //! Writing a take.
 
-use super::held::held;
+use super::held::{chosen, rounded};
 use super::list::{self, FileEntry, FrameEntry};
 use super::tensors::is_ours;
 use super::{Manifest, ParticlesAtRest, Provenance, TakeError, frame_file, frame_to_bytes, state, tables};
@@ -75,9 +75,14 @@ impl TakeWriter {
         Self { folder: folder.clone(), settings, cell_size, entries, at_rest: None }
     }
 
-    /// What the take holds of a frame that the solver has made: the frame that can be read of it.
+    /// The particles that the take holds of a frame, rising; none: all. How they move does not matter.
+    pub fn chosen(&self, frame: &Frame) -> Option<Vec<usize>> {
+        chosen(frame, self.settings, self.cell_size)
+    }
+
+    /// What the take holds of a frame of [`TakeWriter::chosen`] particles: the frame that can be read of it.
     pub fn held(&self, frame: Frame) -> Frame {
-        held(frame, self.settings, self.cell_size)
+        rounded(frame, self.settings)
     }
 
     /// Writes what [`TakeWriter::held`] has left of a frame, its rows of the tables, and the line that lists it; when

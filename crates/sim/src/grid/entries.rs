@@ -17,7 +17,8 @@ pub(crate) struct Entry {
 /// The stored stencils, one row per particle that has one.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(crate) struct Entries {
-    /// Row of each particle, or `NONE`.
+    /// Row of each particle, or `NONE`. It follows from the particle of each row: see [`Entries::number_rows`].
+    #[serde(skip)]
     row: Vec<u32>,
     /// Particle of each row.
     particle: Vec<u32>,
@@ -49,6 +50,17 @@ impl Entries {
         self.count.clear();
         self.entries.clear();
         self.unused = 0;
+    }
+
+    /// Finds the row of each of so many `particles`, which is not in what was read.
+    pub(crate) fn number_rows(&mut self, particles: usize) {
+        self.row.resize(particles, NONE);
+        for (row, &particle) in self.particle.iter().enumerate() {
+            // Others are found by the check.
+            if let Some(of_particle) = self.row.get_mut(particle as usize) {
+                *of_particle = row as u32;
+            }
+        }
     }
 
     /// Checks rows that were read against so many `particles` and `fields`.

@@ -10,7 +10,7 @@ use crate::total;
 use crate::updated::Updated;
 use amounts::{Amounts, Need};
 use fissure_plane::{Matrix, Point, Vector};
-use fissure_scene::{Formulation, OnDistortion, Scene};
+use fissure_scene::{Formulation, HeldParticles, OnDistortion, Scene};
 
 /// What the program takes without a scene [bytes]: `fissure run` on bodies of a few particles.
 const PROGRAM: f64 = 13.5 * MEBIBYTE;
@@ -31,17 +31,23 @@ const FRAMES_TO_GAPS: f64 = 24.0;
 /// What making a mesh takes for each vertex of the outlines [bytes].
 const MESH_PER_POINT: f64 = 1000.0;
 
-/// Frames held at once: the one at hand, of which the mesh is made afterwards, its numbers as tensors, these as a file.
+/// Frames held at once: the one at hand, the one before, of which the mesh is made, and the file of one.
 const FRAMES: f64 = 3.0;
 
-/// States held at once: the one before and the one after a frame.
+/// States held at once: that of the solver, and the whole one with a copy of it.
 const STATES: f64 = 2.0;
+
+/// Particles within a cell of an outline or a crack, for each of those that lie in cut cells there.
+const ROWS_AT_SURFACES: f64 = 2.0;
 
 const MEBIBYTE: f64 = (1 << 20) as f64;
 
 /// Bytes of the particles at rest: places, positions, numbers of body and material, volume and mass, and the number of
 /// the fragment.
 const PARTICLE: usize = size_of::<[i32; 2]>() + size_of::<Point>() + 3 * size_of::<u32>() + 2 * size_of::<f64>();
+
+/// Bytes of a particle at rest in a frame, of which those are chosen that the take holds.
+const CHOSEN_FROM: usize = 3 * size_of::<u32>() + size_of::<f64>() + size_of::<Point>();
 
 /// Bytes of a particle in a frame.
 const FRAME_PARTICLE: usize =
@@ -62,7 +68,14 @@ pub(crate) fn needed(scene: &Scene, formulation: Formulation, growth: f64) -> f6
         }
         _ => total::memory::need(scene, &amounts),
     };
-    let frame = amounts.particles * FRAME_PARTICLE as f64 + amounts.outline_points * FRAME_OUTLINE_POINT as f64;
+    let (held, chosen_from) = match scene.take.particles {
+        HeldParticles::Full => (amounts.particles, 0.0),
+        HeldParticles::Surface => {
+            ((ROWS_AT_SURFACES * amounts.cut_particles).min(amounts.particles), amounts.particles)
+        }
+        HeldParticles::None => (0.0, amounts.particles),
+    };
+    let frame = held * FRAME_PARTICLE as f64 + amounts.outline_points * FRAME_OUTLINE_POINT as f64;
     let needed = PROGRAM
         + amounts.particles * PARTICLE as f64
         + amounts.outline_points * MESH_PER_POINT
@@ -70,6 +83,7 @@ pub(crate) fn needed(scene: &Scene, formulation: Formulation, growth: f64) -> f6
         + amounts.grown_cells * GROWN_CELL
         + need.solver
         + FRAMES * frame
+        + chosen_from * CHOSEN_FROM as f64
         + STATES * need.state;
     let gaps = (scene.frames.count().saturating_sub(1) as f64 / FRAMES_TO_GAPS).min(1.0);
     needed + gaps * (KEPT_PART * needed).min(KEPT_AT_MOST)

@@ -5,10 +5,10 @@ use crate::material::elastic::Elastic;
 use crate::particles::Particles;
 use crate::{SimulationError, formulation, memory, saved};
 use fissure_scene::{Formulation, Scene};
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use std::sync::Arc;
 
-#[derive(Serialize, Deserialize)]
+#[derive(Deserialize)]
 struct Saved {
     version: String,
     scene_hash: String,
@@ -45,13 +45,9 @@ impl Simulation {
     /// # Errors
     /// [`SimulationError::NotSaved`]
     pub fn save(&self) -> Result<Vec<u8>, SimulationError> {
-        saved::to_bytes(&Saved {
-            version: env!("CARGO_PKG_VERSION").into(),
-            scene_hash: self.scene.hash.clone(),
-            formulation: self.formulation,
-            state: self.state.clone(),
-            solver: self.solver.save()?,
-        })
+        // What `Saved` is as bytes, without a copy of the state.
+        let (version, scene_hash) = (env!("CARGO_PKG_VERSION"), &self.scene.hash);
+        saved::to_bytes(&(version, scene_hash, self.formulation, &self.state, self.solver.save()?))
     }
 
     /// Goes on from a saved state of the same scene: gives bit for bit what an uninterrupted run gives.

@@ -111,9 +111,15 @@ impl Simulation {
 
     /// The current state as a frame.
     pub fn frame(&self) -> Frame {
-        let mut particles = self.solver.particle_frame();
+        self.frame_of(|_| None)
+    }
+
+    /// The current state as a frame with the particles that `choose` names, rising, none standing for all: it is given
+    /// the frame with all particles, but without how these move. Takes no more memory than what is chosen needs.
+    pub fn frame_of(&self, choose: impl FnOnce(&Frame) -> Option<Vec<usize>>) -> Frame {
+        let mut particles = self.particles.frame_at_rest();
         particles.piece.clone_from(&self.state.fragments);
-        Frame {
+        let mut frame = Frame {
             number: self.state.frame_number,
             time: self.state.time,
             particles,
@@ -123,7 +129,12 @@ impl Simulation {
             energies: self.energies_of_one_moment(),
             colliders: self.collider_poses(),
             supports: self.support_records(),
+        };
+        if let Some(chosen) = choose(&frame) {
+            frame.particles = frame.particles.chosen(&chosen);
         }
+        self.solver.add_motions(&mut frame.particles);
+        frame
     }
 
     /// What each support does, as in a frame.
@@ -140,5 +151,36 @@ impl Simulation {
     fn collider_poses(&self) -> Vec<Pose> {
         let time = self.state.time;
         self.scene.colliders.iter().map(|c| Obstacle::new(c).at(time).pose()).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use crate::Simulation;
+    use crate::test_scenes::{add_crack, free_body, rectangle, set_motion};
+    use fissure_scene::{Formulation, Selection};
+
+    /// Truth: the whole frame.
+    #[test]
+    fn a_frame_of_some_particles_has_them_as_the_whole_one() {
+        for formulation in [Formulation::Total, Formulation::Updated] {
+            let mut scene = free_body(rectangle([0.0, 0.0], [4.0, 4.0]), 0.25);
+            scene.solver.formulation = formulation;
+            add_crack(&mut scene, &[[0.0, 2.03], [2.1, 2.03]]);
+            set_motion(&mut scene, Selection::All, [3.0, 1.0], 2.0, [2.0, 2.0]);
+            let mut simulation = Simulation::new(&scene).unwrap();
+            for _ in 0..9 {
+                simulation.one_step(1e-3, false).unwrap();
+            }
+            let whole = simulation.frame();
+            let numbers = [3, 77, 140, 255];
+            let some = simulation.frame_of(|frame| {
+                assert_eq!(frame.particles.rest, whole.particles.rest);
+                Some(numbers.to_vec())
+            });
+            assert_eq!(some.particles, whole.particles.chosen(&numbers));
+            assert_eq!((some.particles.velocity.len(), &some.cracks), (4, &whole.cracks));
+        }
     }
 }

@@ -48,7 +48,7 @@ impl Simulation {
     }
 
     fn fastest_place(&self) -> fissure_scene::Point {
-        let particles = self.solver.particle_frame();
+        let particles = self.particles.frame(&*self.solver);
         let mut fastest = (0.0, fissure_scene::Point::origin());
         for (v, x) in particles.velocity.iter().zip(&particles.position) {
             // A NaN counts as fastest of all.

@@ -34,6 +34,11 @@ impl CutParticles {
         Self { stencils: Entries::new(particles), misfit: Vec::new(), strained: Vec::new(), parts: Vec::new() }
     }
 
+    /// Finds the row of each of so many `particles`, which is not in what was read.
+    pub(super) fn number_rows(&mut self, particles: usize) {
+        self.stencils.number_rows(particles);
+    }
+
     /// Checks rows that were read against so many `particles` and `fields`.
     ///
     /// # Errors

@@ -15,8 +15,8 @@ const SAVED_PER_FIELD: usize = 5;
 const CUT_PARTICLE: usize = 3 * size_of::<u32>() + size_of::<[f64; 4]>();
 /// Room for entries that every probe has.
 const PROBE_ENTRIES: usize = 8;
-/// A whole number that is as large as it can be, as bytes of a state.
-const LONGEST_INTEGER: usize = 5;
+/// Numbers of a row on the general path that every particle has: of its own part and of what lies across a crack.
+const ROWS_OF_PARTICLE: usize = 2;
 
 /// What a run of `scene` holds.
 pub(crate) fn need(scene: &Scene, amounts: &Amounts) -> Need {
@@ -31,12 +31,11 @@ pub(crate) fn need(scene: &Scene, amounts: &Amounts) -> Need {
     let number = size_of::<f64>();
     Need {
         solver: amounts.nodes * (NUMBERS_PER_FIELD * number) as f64
-            + amounts.particles * size_of::<u32>() as f64
+            + amounts.particles * (ROWS_OF_PARTICLE * size_of::<u32>()) as f64
             + cut
             + laid
             + amounts.outline_points * probe as f64,
         state: amounts.nodes * (SAVED_PER_FIELD * number) as f64
-            + amounts.particles * LONGEST_INTEGER as f64
             + cut
             + amounts.outline_points * size_of::<Probe>() as f64,
     }

@@ -138,8 +138,10 @@ impl Total {
         state: &[u8],
     ) -> Result<Self, SimulationError> {
         let mut lattice = Self::lattice(scene, particles, cracks)?;
-        let (layout, mut motion, probes, ties, (impulses, face_forces), done): Saved = saved::from_bytes(state)?;
+        let (mut layout, mut motion, probes, ties, (impulses, face_forces), done): Saved = saved::from_bytes(state)?;
         let fields = layout.fields.len();
+        layout.cut.number_rows(lattice.particles.len());
+        layout.far.number_rows(lattice.particles.len());
         lattice.check(&layout, cracks.len())?;
         motion.check(fields)?;
         probes.check(fields, scene, cracks)?;
@@ -391,8 +393,8 @@ impl Solver for Total {
 }
 
 impl Snapshot for Total {
-    fn particle_frame(&self) -> ParticleFrame {
-        snapshot::particle_frame(&self.lattice, &self.motion)
+    fn add_motions(&self, frame: &mut ParticleFrame) {
+        snapshot::add_motions(&self.lattice, &self.motion, frame);
     }
 
     fn outline_frames(&self) -> Vec<OutlineFrame> {

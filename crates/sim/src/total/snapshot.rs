@@ -10,24 +10,27 @@ use super::ties::Ties;
 use crate::crack::Crack;
 use crate::crack::cracks::Cracks;
 use crate::faces::crack_frame::crack_frame;
-use crate::particles::ParticleNow;
+use crate::particles::{ParticleNow, Particles};
 use crate::threads::ranges;
 use fissure_plane::{Matrix, Point, Vector};
 use fissure_scene::{CrackFrame, OutlineFrame, ParticleFrame, Scene};
 use std::ops::Range;
 
-/// The particles as a frame holds them, pieces left 0.
-pub(super) fn particle_frame(lattice: &Lattice, motion: &Motion) -> ParticleFrame {
-    let mut reader = lattice.reader();
-    lattice.particles.frame(|p| {
-        let (e, now) = (lattice.material(p), reader.motion(p, motion));
-        ParticleNow {
-            position: lattice.particles.rest[p] + now.displacement,
-            velocity: now.velocity,
-            gradient: now.strain,
-            cauchy_stress: crate::cauchy_stress(&now.strain, e.mu, e.lambda),
-        }
-    })
+/// Adds to `frame`, which has what some particles are at rest, how these move.
+pub(super) fn add_motions(lattice: &Lattice, motion: &Motion, frame: &mut ParticleFrame) {
+    Particles::add_motions(frame, |numbers| {
+        let mut reader = lattice.reader();
+        let of = |p: usize| {
+            let (e, now) = (lattice.material(p), reader.motion(p, motion));
+            ParticleNow {
+                position: lattice.particles.rest[p] + now.displacement,
+                velocity: now.velocity,
+                gradient: now.strain,
+                cauchy_stress: crate::cauchy_stress(&now.strain, e.mu, e.lambda),
+            }
+        };
+        numbers.map(of).collect()
+    });
 }
 
 /// Of each particle: position [m], velocity [m/s], displacement gradient H = F − I [–].

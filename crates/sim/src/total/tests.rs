@@ -98,7 +98,7 @@ fn ten_turns_leave_no_stress() {
             total.motion.displacement[0][d] = (cosine - 1.0) * x.x - sine * x.y;
             total.motion.displacement[1][d] = sine * x.x + (cosine - 1.0) * x.y;
         }
-        let worst = total.particle_frame().cauchy_stress.iter().map(|s| s.norm()).fold(0.0, f64::max);
+        let worst = total.lattice.particles.frame(&total).cauchy_stress.iter().map(|s| s.norm()).fold(0.0, f64::max);
         assert!(worst < 1e-10 * young, "{worst}");
     }
 }
@@ -544,7 +544,7 @@ fn a_support_that_ends_at_a_crack_holds_one_face_only() {
         for step in 0..20 {
             total.step(&cracks, time_step * f64::from(step), time_step, &mut |_| ()).unwrap();
         }
-        let frame = total.particle_frame();
+        let frame = total.lattice.particles.frame(&total);
         let fastest = |is_above: bool| {
             let of_half = frame.rest.iter().zip(&frame.velocity).filter(|(place, _)| (place.y >= height) == is_above);
             of_half.map(|(_, velocity)| velocity.norm()).fold(0.0, f64::max)
@@ -612,7 +612,7 @@ fn bodies_that_lie_on_each_other_part() {
     for step in 0..50 {
         total.step(&cracks, time_step * f64::from(step), time_step, &mut |_| ()).unwrap();
     }
-    let frame = total.particle_frame();
+    let frame = total.lattice.particles.frame(&total);
     for (body, velocity) in frame.body.iter().zip(&frame.velocity) {
         let expected = if *body == 0 { Vector::new(-0.7, 0.3) } else { Vector::zeros() };
         assert!((velocity - expected).norm() < 1e-11, "{body} {velocity}");
@@ -660,7 +660,7 @@ fn discs_exchange_their_speed() {
         assert!(touched && !total.is_touching());
         assert!((after - before).norm() < 1e-12 * before.norm(), "{before} {after}");
         assert!((spin - spin_before).abs() < 1e-6 * before.norm(), "{turn} {spin_before} {spin}");
-        let frame = total.particle_frame();
+        let frame = total.lattice.particles.frame(&total);
         let mean = |body: u32| {
             let of: Vec<Vector> =
                 (0..frame.body.len()).filter(|&p| frame.body[p] == body).map(|p| frame.velocity[p]).collect();

@@ -9,14 +9,14 @@ use crate::SimulationError;
 use crate::boundary::supports::Reaction;
 use crate::crack::cracks::Cracks;
 use crate::faces::crack_frame::crack_frame;
-use crate::particles::ParticleNow;
+use crate::particles::{ParticleNow, Particles};
 use crate::saved;
 use crate::solver::{Continuation, Snapshot, SolverEnergies};
 use fissure_scene::{CrackFrame, OutlineFrame, ParticleFrame, Point, Scene, Vector};
 
 impl Snapshot for Updated {
-    fn particle_frame(&self) -> ParticleFrame {
-        self.points.frame(&self.setup)
+    fn add_motions(&self, frame: &mut ParticleFrame) {
+        self.points.add_motions(&self.setup, frame);
     }
 
     fn outline_frames(&self) -> Vec<OutlineFrame> {
@@ -71,15 +71,16 @@ impl Snapshot for Updated {
 }
 
 impl Points {
-    /// The particles as a frame holds them (pieces left 0).
-    pub(super) fn frame(&self, setup: &Setup) -> ParticleFrame {
-        setup.particles.frame(|p| {
+    /// Adds to `frame`, which has what some particles are at rest, how these move.
+    pub(super) fn add_motions(&self, setup: &Setup, frame: &mut ParticleFrame) {
+        let now = |p: usize| {
             let (point, (mu, lambda)) = (&self.point[p], self.moduli(setup, p));
             let gradient = self.total_gradient(p);
             let ratio = 1.0 + crate::volume_change(&gradient);
             let cauchy_stress = crate::kirchhoff_stress(&point.elastic_gradient, mu, lambda) / ratio;
             ParticleNow { position: point.position, velocity: point.velocity, gradient, cauchy_stress }
-        })
+        };
+        Particles::add_motions(frame, |numbers| numbers.map(now).collect());
     }
 }
 

@@ -40,7 +40,7 @@ impl Run {
     }
 
     fn largest_stress(&self) -> f64 {
-        self.solver.particle_frame().cauchy_stress.iter().fold(0.0, |a, s| a.max(s.norm()))
+        self.solver.setup.particles.frame(&self.solver).cauchy_stress.iter().fold(0.0, |a, s| a.max(s.norm()))
     }
 }
 
@@ -280,7 +280,7 @@ fn plastic_flow_keeps_the_whole_deformation() {
     }
     run.steps(10, 1e-3);
     // ẋ = 20 x (fixed in the material): x = X (1 + 20 t).
-    let frame = run.solver.particle_frame();
+    let frame = run.solver.setup.particles.frame(&run.solver);
     let middle = frame.rest.iter().position(|x| (x - Point::new(0.425, 0.425)).norm() < 1e-9).unwrap();
     let exact = Matrix::new(1.0 + 20.0 * run.time, 0.0, 0.0, 1.0);
     assert!((frame.deformation_gradient[middle] - exact).norm() < 1e-3, "{}", frame.deformation_gradient[middle]);
@@ -395,7 +395,7 @@ fn growth_keeps_momentum_and_follows_the_material() {
     let (solver, cracks) = (&mut run.solver, &run.cracks);
     solver.recut(cracks, &[TipId::new(0, End::End)]);
     assert_eq!(run.momentum(), before);
-    let frame = run.solver.particle_frame();
+    let frame = run.solver.setup.particles.frame(&run.solver);
     let near = (0..frame.len())
         .min_by(|&a, &b| (frame.rest[a] - target).norm().total_cmp(&(frame.rest[b] - target).norm()))
         .unwrap();

@@ -57,7 +57,7 @@ impl ParticlesAtRest {
         Self::read(&Reader::new(bytes)?)
     }
 
-    pub(super) fn add_to(&self, tensors: &mut Tensors) {
+    pub(super) fn add_to<'a>(&'a self, tensors: &mut Tensors<'a>) {
         tensors.u32s(Self::ID, self.id.iter().copied());
         tensors.u32s("particles.body", self.body.iter().copied());
         tensors.points("particles.rest", self.rest.iter());

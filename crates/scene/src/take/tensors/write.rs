@@ -8,13 +8,17 @@ use safetensors::tensor::{Dtype, View, serialize};
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-struct Tensor {
+/// Adds the bytes of a tensor.
+type Write<'a> = dyn Fn(&mut Vec<u8>) + 'a;
+
+/// What is written as a tensor, made into bytes only when it is its turn.
+struct Tensor<'a> {
     dtype: Dtype,
     shape: Vec<usize>,
-    bytes: Vec<u8>,
+    write: Box<Write<'a>>,
 }
 
-impl View for &Tensor {
+impl View for &Tensor<'_> {
     fn dtype(&self) -> Dtype {
         self.dtype
     }
@@ -22,55 +26,62 @@ impl View for &Tensor {
         &self.shape
     }
     fn data(&self) -> Cow<'_, [u8]> {
-        Cow::Borrowed(&self.bytes)
+        let mut bytes = Vec::with_capacity(self.data_len());
+        (self.write)(&mut bytes);
+        Cow::Owned(bytes)
     }
     fn data_len(&self) -> usize {
-        self.bytes.len()
+        self.shape.iter().product::<usize>() * self.dtype.bitsize() / 8
     }
 }
 
 /// The tensors of a file, in the order in which they are added.
 #[derive(Default)]
-pub(super) struct Tensors(Vec<(String, Tensor)>);
+pub(super) struct Tensors<'a>(Vec<(String, Tensor<'a>)>);
 
-impl Tensors {
-    fn add(&mut self, name: impl Into<String>, dtype: Dtype, shape: Vec<usize>, bytes: Vec<u8>) {
-        self.0.push((name.into(), Tensor { dtype, shape, bytes }));
+impl<'a> Tensors<'a> {
+    fn add<T: 'a, const N: usize>(
+        &mut self,
+        name: impl Into<String>,
+        dtype: Dtype,
+        shape: Vec<usize>,
+        values: impl Iterator<Item = T> + Clone + 'a,
+        bytes_of: fn(T) -> [u8; N],
+    ) {
+        let write = move |bytes: &mut Vec<u8>| values.clone().for_each(|value| bytes.extend(bytes_of(value)));
+        self.0.push((name.into(), Tensor { dtype, shape, write: Box::new(write) }));
     }
-    fn f64s(&mut self, name: impl Into<String>, shape: Vec<usize>, values: impl Iterator<Item = f64>) {
-        self.add(name, Dtype::F64, shape, values.flat_map(f64::to_le_bytes).collect());
+    fn f64s(&mut self, name: impl Into<String>, shape: Vec<usize>, values: impl Iterator<Item = f64> + Clone + 'a) {
+        self.add(name, Dtype::F64, shape, values, f64::to_le_bytes);
     }
     fn reals(
         &mut self,
         name: impl Into<String>,
         precision: Precision,
         shape: Vec<usize>,
-        values: impl Iterator<Item = f64>,
+        values: impl Iterator<Item = f64> + Clone + 'a,
     ) {
         match precision {
             Precision::Double => self.f64s(name, shape, values),
-            Precision::Single => {
-                let bytes = values.flat_map(|value| (value as f32).to_le_bytes()).collect();
-                self.add(name, Dtype::F32, shape, bytes);
-            }
+            Precision::Single => self.add(name, Dtype::F32, shape, values, |value| (value as f32).to_le_bytes()),
         }
     }
-    pub(super) fn numbers(&mut self, name: impl Into<String>, values: impl ExactSizeIterator<Item = f64>) {
+    pub(super) fn numbers(&mut self, name: impl Into<String>, values: impl ExactSizeIterator<Item = f64> + Clone + 'a) {
         self.f64s(name, vec![values.len()], values);
     }
-    pub(super) fn u32s(&mut self, name: impl Into<String>, values: impl ExactSizeIterator<Item = u32>) {
-        self.add(name, Dtype::U32, vec![values.len()], values.flat_map(u32::to_le_bytes).collect());
+    pub(super) fn u32s(&mut self, name: impl Into<String>, values: impl ExactSizeIterator<Item = u32> + Clone + 'a) {
+        self.add(name, Dtype::U32, vec![values.len()], values, u32::to_le_bytes);
     }
-    fn i64s(&mut self, name: impl Into<String>, shape: Vec<usize>, values: impl Iterator<Item = i64>) {
-        self.add(name, Dtype::I64, shape, values.flat_map(i64::to_le_bytes).collect());
+    fn i64s(&mut self, name: impl Into<String>, shape: Vec<usize>, values: impl Iterator<Item = i64> + Clone + 'a) {
+        self.add(name, Dtype::I64, shape, values, i64::to_le_bytes);
     }
-    pub(super) fn points<'a>(&mut self, name: impl Into<String>, points: impl Iterator<Item = &'a Point>) {
-        let values: Vec<f64> = points.flat_map(|p| [p.x, p.y]).collect();
-        self.f64s(name, vec![values.len() / 2, 2], values.into_iter());
+    pub(super) fn points(&mut self, name: impl Into<String>, points: impl Iterator<Item = &'a Point> + Clone + 'a) {
+        let count = points.clone().count();
+        self.f64s(name, vec![count, 2], points.flat_map(|p| [p.x, p.y]));
     }
-    fn vectors<'a>(&mut self, name: impl Into<String>, vectors: impl Iterator<Item = &'a Vector>) {
-        let values: Vec<f64> = vectors.flat_map(|v| [v.x, v.y]).collect();
-        self.f64s(name, vec![values.len() / 2, 2], values.into_iter());
+    fn vectors(&mut self, name: impl Into<String>, vectors: impl Iterator<Item = &'a Vector> + Clone + 'a) {
+        let count = vectors.clone().count();
+        self.f64s(name, vec![count, 2], vectors.flat_map(|v| [v.x, v.y]));
     }
     fn offsets(&mut self, name: impl Into<String>, lengths: impl Iterator<Item = usize>) {
         let mut offsets = vec![0_i64];
@@ -102,13 +113,16 @@ pub fn frame_to_bytes(
     at_rest: Option<&ParticlesAtRest>,
 ) -> Result<Vec<u8>, FrameFileError> {
     frame.check()?;
+    let p = &frame.particles;
+    let own = (!at_rest.is_some_and(|known| known.is_of(p))).then(|| ParticlesAtRest::of(p));
+    let formed = frame.cracks.iter().map(|k| k.formed.as_deref()).collect::<Option<Vec<_>>>();
+    let formed = formed.map(|formed| formed.concat());
     let mut t = Tensors::default();
     t.i64s("frame.number", vec![1], std::iter::once(frame.number));
     t.numbers("frame.time", std::iter::once(frame.time));
 
-    let p = &frame.particles;
-    if !at_rest.is_some_and(|known| known.is_of(p)) {
-        ParticlesAtRest::of(p).add_to(&mut t);
+    if let Some(own) = &own {
+        own.add_to(&mut t);
     }
     t.u32s("particles.piece", p.piece.iter().copied());
     let n = p.len();
@@ -139,8 +153,7 @@ pub fn frame_to_bytes(
     t.vectors("cracks.above_velocity", c.iter().flat_map(|k| &k.above_velocity));
     t.vectors("cracks.below_velocity", c.iter().flat_map(|k| &k.below_velocity));
     // Those of all cracks or of none: a frame is of one version.
-    if let Some(formed) = c.iter().map(|k| k.formed.as_deref()).collect::<Option<Vec<_>>>() {
-        let formed = formed.concat();
+    if let Some(formed) = &formed {
         t.numbers("cracks.formed_time", formed.iter().map(|formed| formed.time));
         t.numbers("cracks.formed_mode_1", formed.iter().map(|formed| formed.mode_1));
     }
@@ -151,10 +164,10 @@ pub fn frame_to_bytes(
     t.u32s("tips.state", tips.iter().map(|tip| STATES.iter().position(|s| *s == tip.state).unwrap_or(0) as u32));
     t.points("tips.position", tips.iter().map(|tip| &tip.position));
     for (i, name) in TIP_NUMBERS.into_iter().enumerate() {
-        t.numbers(format!("tips.{name}"), tips.iter().map(|tip| tip_numbers(tip)[i]));
+        t.numbers(format!("tips.{name}"), tips.iter().map(move |tip| tip_numbers(tip)[i]));
     }
-    let shrunk = tips.iter().map(|tip| u8::from(tip.radius_shrunk)).collect();
-    t.add("tips.radius_shrunk", Dtype::U8, vec![tips.len()], shrunk);
+    let shrunk = tips.iter().map(|tip| u8::from(tip.radius_shrunk));
+    t.add("tips.radius_shrunk", Dtype::U8, vec![tips.len()], shrunk, u8::to_le_bytes);
 
     let e = &frame.energies;
     t.numbers("energies.kinetic", std::iter::once(e.kinetic));
