@@ -12,6 +12,7 @@ use crate::extrude::Extrusion;
 use crate::held_open::{parted_points, shifts as held_open};
 use crate::history::{attributes, histories};
 use crate::interior::Interior;
+use crate::joined::joined;
 use crate::mesh::{Content, Mesh, MeshDefect, object_name};
 use crate::narrows::part_narrows;
 use crate::needles::blunt_needles;
@@ -21,7 +22,7 @@ use crate::overlaps::{Enclosed, share_out_overlaps};
 use crate::pieces::numbers;
 use crate::pinch::part_pinches;
 use crate::relief::Relief;
-use crate::rest_cut::rest_cap;
+use crate::rest_cut::{RestDivision, rest_cap};
 use crate::short_edges::{Growth, without_short_edges};
 use crate::slivers::{drop_narrow_parts, fill_narrow_holes, without_slivers};
 use crate::slot::Slot;
@@ -31,7 +32,10 @@ use crate::source::{Carried, SourceEdge};
 use crate::thinned::{kept_points, picked, thinned};
 use crate::triangulate::{Cap, Division, triangulate};
 use crate::widening::{Shift, Widening, widened};
-use fissure_scene::{Attribute, CrackFrame, Cut, Fragments, Frame, OpeningSettings, Region, Scene, Vector, Walls};
+use fissure_scene::{
+    Attribute, CrackFrame, Cut, Fragments, Frame, OpeningSettings, Point, Region, Scene, Vector, Walls,
+};
+use rustc_hash::FxHashSet;
 use std::collections::BTreeMap;
 
 /// Overlaps of fragments that are at most so wide in the mean are inaccuracies of contact, in cells: faces that press
@@ -86,16 +90,16 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
         .roughness
         .map(|roughness| Relief::new(roughness, options.thickness, moved, &cracks.cracks, &cracks.offsets));
     // Faces that only move into the material leave no fragment beyond itself.
-    let takes_off = |settings: &OpeningSettings| settings.factor.value(frame.time) >= 1.0;
+    let takes_off = |settings: &&OpeningSettings| settings.factor.value(frame.time) >= 1.0;
     let still = || shifts.iter().map(|of_crack| vec![Shift::default(); of_crack.len()]).collect();
     let still_lines = options
         .opening
         .as_ref()
-        .map(|settings| (takes_off(settings), MovedLines::new(scene, moved, &cracks, still()).with(histories.clone())));
+        .filter(takes_off)
+        .map(|_| MovedLines::new(scene, moved, &cracks, still()).with(histories.clone()));
     let lines = MovedLines::new(scene, moved, &cracks, shifts).with(histories);
     let mut objects = BTreeMap::<ObjectKey, Vec<Vec<Vec<SourceEdge>>>>::new();
     let mut own = Boundaries::new();
-    let mut ways = BTreeMap::<ObjectKey, Vec<Vec<Vector>>>::new();
     for (fragment, number) in fragments.list().iter().zip(numbers) {
         let (grid, object) = (grids[fragment.body as usize], (fragment.body, number));
         let mut boundaries: Vec<Vec<SourceEdge>> =
@@ -103,15 +107,9 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
         if options.opening.is_none() {
             hold_crumb(&mut boundaries, frame, object, scene.particle_spacing, grid);
         }
-        if let Some((takes_off, lines)) = &still_lines {
-            let edges: Vec<SourceEdge> =
-                fragment.boundaries.iter().flat_map(|boundary| lines.edges(boundary, grid)).collect();
-            let shown = boundaries.iter().flatten().zip(&edges);
-            let of_corners = shown.map(|(shown, still)| grid.place(shown.a) - grid.place(still.a));
-            ways.entry(object).or_default().push(of_corners.collect());
-            if *takes_off {
-                own.entry(object).or_default().extend(edges);
-            }
+        if let Some(lines) = &still_lines {
+            let edges = fragment.boundaries.iter().flat_map(|boundary| lines.edges(boundary, grid));
+            own.entry(object).or_default().extend(edges);
         }
         objects.entry(object).or_default().push(boundaries);
     }
@@ -123,8 +121,7 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
     let mut opened = Boundaries::new();
     for ((body, piece), fragments) in objects {
         if options.cut == Cut::Rest
-            && let Some(mesh) =
-                solids.at_rest(body, piece, &fragments, ways.get(&(body, piece)).map_or(&[], Vec::as_slice))
+            && let Some(mesh) = solids.at_rest(body, piece, &fragments)
         {
             meshes.extend(mesh.map(|mesh| ((body, piece), mesh)));
             continue;
@@ -368,24 +365,36 @@ impl<'a> Solids<'a> {
 
     /// Extrudes the triangles of `fragments` at rest, moved with the material. None where that is no solid: where the
     /// material has folded over so that one corner lies on another. Nothing in it where it is smaller than asked for.
-    /// `ways`: how far the corners of each are moved to be shown [m]; empty where none is.
-    fn at_rest(
+    fn at_rest(&self, body: u32, piece: u32, fragments: &[Vec<Vec<SourceEdge>>]) -> Option<Option<Mesh>> {
+        let least = self.options.shortest_edge * size(self.scene, body);
+        let tidied = self.at_rest_with(body, piece, fragments, least, false);
+        tidied.or_else(|| self.at_rest_with(body, piece, fragments, 0.0, true))
+    }
+
+    /// The same, without edges that are shorter than `least` [m] at rest; whether edges of boundaries are kept whole.
+    fn at_rest_with(
         &self,
         body: u32,
         piece: u32,
         fragments: &[Vec<Vec<SourceEdge>>],
-        ways: &[Vec<Vector>],
+        least: f64,
+        keeps_edges: bool,
     ) -> Option<Option<Mesh>> {
-        let sources: Vec<SourceEdge> = fragments.iter().flatten().flatten().copied().collect();
         let (grid, interior) = (self.grids[body as usize], &self.interiors[body as usize]);
-        let (low, high) = self.scene.bodies[body as usize].region.bounds();
+        let region = &self.scene.bodies[body as usize].region;
+        let (low, high) = region.bounds();
         let grids = [grid, Grid::covering(&[low, high], 0.0)];
-        let mut first = 0;
+        let bits = |place: &Point| [place.x.to_bits(), place.y.to_bits()];
+        let corners: FxHashSet<[u64; 2]> = region.rings().flatten().map(bits).collect();
+        let is_corner = |carried: &Carried| corners.contains(&bits(&carried.rest));
+        let is_drawn = |edge: &SourceEdge| edge.slot == Slot::Outside && edge.carried.iter().all(is_corner);
+        let division = RestDivision { size: self.options.cap_size, least, keeps_edges };
+        let mut sources = Vec::new();
         let mut caps = Vec::with_capacity(fragments.len());
-        for (i, boundaries) in fragments.iter().enumerate() {
-            let ways = ways.get(i).map_or(&[][..], Vec::as_slice);
-            caps.push(rest_cap(boundaries, ways, first, self.options.cap_size, grids, interior, piece)?);
-            first += boundaries.iter().map(Vec::len).sum::<usize>();
+        for boundaries in fragments {
+            let boundaries = joined(boundaries, least, grids[1], is_drawn);
+            caps.push(rest_cap(&boundaries, sources.len(), division, grids, interior, piece)?);
+            sources.extend(boundaries.into_iter().flatten());
         }
         caps.retain(|(cap, _)| area(&cap.shape, grid) >= self.options.smallest_fragment);
         let mesh = self.mesh(body, piece, &self.extrusion(body, &sources), caps);
@@ -449,7 +458,6 @@ fn is_drawn(region: &Region, edge: &Edge, source: &SourceEdge) -> bool {
 mod tests {
     use super::*;
     use crate::common::{options, scene, square};
-    use fissure_scene::Point;
 
     /// The square of 1 m at `x`, with an edge of 1e-4 m along one side and a corner that stands out by as much.
     fn boundary(x: f64, grid: Grid) -> Vec<SourceEdge> {

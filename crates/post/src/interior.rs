@@ -84,20 +84,29 @@ impl<'a> Interior<'a> {
     /// its particles sees it: X = X_p + F_p⁻¹ (x − x_p). None where none of them is near.
     pub(crate) fn at(&self, place: Point, piece: u32) -> Option<(Point, Vector)> {
         let particles = &self.frame.particles;
-        let p = self.now.nearest(place, piece, |_| true)?;
+        let p = self.now.nearest(place, piece)?;
         let back = particles.deformation_gradient[p].try_inverse()?;
         Some((particles.rest[p] + back * (place - particles.position[p]), particles.velocity[p]))
     }
 
-    /// Position [m] and velocity [m/s] of the material of fragment `piece` that is at `rest` [m] at rest, as the
-    /// nearest of its particles sees it: x = x_p + F_p (X − X_p); of those on its side of cracks, if there are any.
-    /// None where none of them is near.
-    pub(crate) fn moved(&self, rest: Point, piece: u32) -> Option<(Point, Vector)> {
+    /// Position [m] and velocity [m/s] of the material of fragment `piece` that is at `rest` [m] at rest: the mean of
+    /// what the particles around it see there, x = x_p + F_p (X − X_p), the nearer the more. Only those count that are
+    /// seen `from` a place beside it, on its side of cracks. None where there are none.
+    pub(crate) fn moved(&self, rest: Point, from: Point, piece: u32) -> Option<(Point, Vector)> {
         let particles = &self.frame.particles;
-        let on_this_side = |p: usize| self.sight.as_ref().is_none_or(|sight| sight.reaches(rest, particles.rest[p]));
-        let p = self.rest.nearest(rest, piece, on_this_side).or_else(|| self.rest.nearest(rest, piece, |_| true))?;
-        let way = particles.deformation_gradient[p] * (rest - particles.rest[p]);
-        Some((particles.position[p] + way, particles.velocity[p]))
+        let on_this_side = |p: usize| self.sight.as_ref().is_none_or(|sight| sight.reaches(from, particles.rest[p]));
+        let (mut total, mut place, mut velocity) = (0.0, Vector::zeros(), Vector::zeros());
+        for binned in self.rest.around(rest, piece) {
+            let part = 1.0 - (binned.place - rest).norm_squared() / self.rest.width.powi(2);
+            if part > 0.0 && on_this_side(binned.particle as usize) {
+                let (p, weight) = (binned.particle as usize, part * part);
+                let way = particles.deformation_gradient[p] * (rest - particles.rest[p]);
+                total += weight;
+                place += weight * (particles.position[p].coords + way);
+                velocity += weight * particles.velocity[p];
+            }
+        }
+        (total > 0.0).then(|| ((place / total).into(), velocity / total))
     }
 }
 
@@ -128,21 +137,25 @@ impl Bins {
     }
 
     /// The particle of fragment `piece` nearest to `place`, of those in its bin and in those around it; of several the
-    /// one in the first column, the first row and with the lowest number. Only such that are `welcome`.
-    fn nearest(&self, place: Point, piece: u32, welcome: impl Fn(usize) -> bool) -> Option<usize> {
-        let [column, row] = bin_of(place, self.width);
-        let around = |x: i32| x.saturating_sub(1)..=x.saturating_add(1);
+    /// one in the first column, the first row and with the lowest number.
+    fn nearest(&self, place: Point, piece: u32) -> Option<usize> {
         let mut nearest: Option<(f64, u32)> = None;
-        for bin in around(column).flat_map(|column| around(row).map(move |row| [column, row])) {
-            let Some(range) = self.ranges.get(&bin) else { continue };
-            for binned in self.particles[range.clone()].iter().filter(|binned| binned.piece == piece) {
-                let distance = (binned.place - place).norm_squared();
-                if nearest.is_none_or(|(least, _)| distance < least) && welcome(binned.particle as usize) {
-                    nearest = Some((distance, binned.particle));
-                }
+        for binned in self.around(place, piece) {
+            let distance = (binned.place - place).norm_squared();
+            if nearest.is_none_or(|(least, _)| distance < least) {
+                nearest = Some((distance, binned.particle));
             }
         }
         nearest.map(|(_, particle)| particle as usize)
+    }
+
+    /// The particles of fragment `piece` in the bin of `place` and in those around it.
+    fn around(&self, place: Point, piece: u32) -> impl Iterator<Item = &Binned> {
+        let [column, row] = bin_of(place, self.width);
+        let around = |x: i32| x.saturating_sub(1)..=x.saturating_add(1);
+        let bins = around(column).flat_map(move |column| around(row).map(move |row| [column, row]));
+        let of_bin = |bin: [i32; 2]| self.ranges.get(&bin).map_or(&[][..], |range| &self.particles[range.clone()]);
+        bins.flat_map(of_bin).filter(move |binned| binned.piece == piece)
     }
 }
 

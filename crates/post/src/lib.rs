@@ -60,6 +60,7 @@ mod formats;
 mod held_open;
 mod history;
 mod interior;
+mod joined;
 #[cfg(feature = "files")]
 mod manifest;
 mod mesh;

@@ -4,12 +4,12 @@
 //! frame, corner by corner. A crack that ends within a fragment is an edge of them with two sides: going around a
 //! corner, what lies between two edges of the boundary has a corner of its own.
 
-use crate::boolean::{Edge, SourceIndex};
+use crate::boolean::{Edge, Shape, SourceIndex};
 use crate::drawn_along::drawn_along;
 use crate::interior::Interior;
 use crate::snap::Grid;
 use crate::source::{Carried, SourceEdge};
-use crate::triangulate::Cap;
+use crate::triangulate::{Cap, inwards};
 use fissure_scene::{Point, Vector};
 use spade::handles::FixedVertexHandle;
 use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation as _};
@@ -20,38 +20,70 @@ type Delaunay = ConstrainedDelaunayTriangulation<Point2<f64>>;
 /// Smallest angle that new corners are made for [degrees].
 const SMALLEST_ANGLE: f64 = 20.1;
 
+/// Room between a fragment and the frame around it, as a part of its size.
+const MARGIN: f64 = 0.5;
+
+/// How the triangles of a fragment at rest are made.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RestDivision {
+    /// Length of edges within, at most [m]; none: as long as may be.
+    pub(crate) size: Option<f64>,
+    /// Triangles so small that their edges are shorter are not divided [m].
+    pub(crate) least: f64,
+    /// Whether edges of the boundary get no new corners.
+    pub(crate) keeps_edges: bool,
+}
+
 /// Triangles of the fragment with these boundaries, moved with the material, and what the corners within carry. The
-/// edges of the boundaries are `first` and those after it of their object; new corners lie within only.
+/// edges of the boundaries are `first` and those after it of their object.
 ///
 /// `grids`: those of the body now and at rest.
 ///
-/// `ways`: how far each edge's first corner is moved to be shown, edge after edge [m]; empty where nothing is.
-///
-/// None where edges cross at rest, which those of [`fissure_scene::Fragments`] do by rounding to the grid only, or
-/// where no particle of fragment `piece` is near to a corner.
+/// None where edges cross at rest, which those of [`fissure_scene::Fragments`] do by rounding to the grid only.
 pub(crate) fn rest_cap(
     boundaries: &[Vec<SourceEdge>],
-    ways: &[Vector],
     first: usize,
-    size: Option<f64>,
+    division: RestDivision,
     grids: [Grid; 2],
     interior: &Interior<'_>,
     piece: u32,
 ) -> Option<(Cap, Vec<Carried>)> {
     let [grid, rest_grid] = grids;
     let (corners, places) = corners(boundaries, rest_grid);
-    let triangles = triangles(&corners, places, size.map(|size| size / rest_grid.step))?;
-    let sides = Sides::new(&triangles, &corners)?;
+    let old = places.len();
+    let triangles = triangles(&corners, places, division, rest_grid.step)?;
+    let chains = Chains::new(&triangles, old);
+    let (mut corners_now, mut shape) = (Vec::with_capacity(corners.len()), Shape::with_capacity(corners.len()));
+    let mut outer = Vec::new();
     let mut source = first as u32;
-    let mut contour = |edges: &Vec<SourceEdge>| {
-        let edge = |e: &SourceEdge| {
+    for (edges, corners) in boundaries.iter().zip(&corners) {
+        let (mut ring, mut contour) = (Vec::with_capacity(edges.len()), Vec::with_capacity(edges.len()));
+        for (i, edge) in edges.iter().enumerate() {
+            let whole = Edge { a: edge.a, b: edge.b, source: SourceIndex(source) };
             source += 1;
-            Edge { a: e.a, b: e.b, source: SourceIndex(source - 1) }
-        };
-        edges.iter().map(edge).collect::<Vec<_>>()
-    };
-    let shape = boundaries.iter().map(&mut contour).collect();
-    let (mut within, mut carried) = (Vec::new(), Vec::new());
+            let [from, to] = [corners[i], corners[(i + 1) % corners.len()]];
+            let [start, end] = [0, 1].map(|k| edge.carried[k].rest);
+            ring.push(from);
+            outer.push(start);
+            let mut place = edge.a;
+            for &corner in chains.between(from, to)? {
+                let rest = rest_place(&triangles, corner, rest_grid);
+                let part = (rest - start).norm() / (end - start).norm();
+                let [a, b] = [edge.a, edge.b].map(|p| Point2::new(p.x as f64, p.y as f64));
+                let next = inwards(&whole, Point2::new(a.x + part * (b.x - a.x), a.y + part * (b.y - a.y)));
+                contour.push(Edge { a: place, b: next, ..whole });
+                ring.push(corner);
+                outer.push(rest);
+                place = next;
+            }
+            contour.push(Edge { a: place, ..whole });
+        }
+        corners_now.push(ring);
+        shape.push(contour);
+    }
+    let sides = Sides::new(&triangles, &corners_now)?;
+    let mut within: Vec<Option<(Point, Vector)>> = Vec::new();
+    let mut places = outer.clone();
     let mut number = BTreeMap::new();
     let mut found = Vec::with_capacity(sides.faces.len());
     for (face, corner) in sides.faces {
@@ -62,11 +94,9 @@ pub(crate) fn rest_cap(
                 None => match number.get(&vertex.index()) {
                     Some(&number) => number,
                     None => {
-                        let Point2 { x, y } = vertex.position();
-                        let rest = Point::new(x, y) * rest_grid.step;
-                        let (place, velocity) = interior.moved(rest, piece)?;
-                        within.push(grid.snap(place));
-                        carried.push(Carried::within(rest, velocity));
+                        let rest = rest_place(&triangles, vertex.index(), rest_grid);
+                        within.push(interior.moved(rest, rest, piece));
+                        places.push(rest);
                         let new = sides.count + within.len() as u32 - 1;
                         number.insert(vertex.index(), new);
                         new
@@ -76,15 +106,49 @@ pub(crate) fn rest_cap(
         }
         found.push(triangle);
     }
-    if !ways.is_empty() {
-        let outer = boundaries.iter().flatten().map(|edge| edge.carried[0].rest);
-        let places: Vec<Point> = outer.chain(carried.iter().map(|carried| carried.rest)).collect();
-        let along = drawn_along(ways, &places, &found);
-        for (place, way) in within.iter_mut().zip(&along[ways.len()..]) {
-            *place = grid.snap(grid.place(*place) + way);
+    let shown: Vec<Point> = shape.iter().flatten().map(|edge| grid.place(edge.a)).collect();
+    // By how much the boundary is off what particles beside it see.
+    let way = |((shown, rest), from): ((&Point, &Point), Point)| {
+        interior.moved(*rest, from, piece).map(|(place, _)| shown - place)
+    };
+    let mut ways: Vec<Option<Vector>> =
+        shown.iter().zip(&outer).zip(beside(&places, outer.len(), &found)).map(way).collect();
+    ways.resize(places.len(), None);
+    let along = drawn_along(&ways, &places, &found);
+    // Corners that see no particle go as those around them do.
+    let steps = shown.iter().zip(&places).map(|(shown, rest)| Some(shown - rest));
+    let beyond = places.iter().zip(&along).skip(shown.len());
+    let seen = within.iter().zip(beyond).map(|(seen, (rest, way))| seen.map(|(place, _)| place - rest + way));
+    let steps = drawn_along(&steps.chain(seen).collect::<Vec<_>>(), &places, &found);
+    let edges: Vec<&SourceEdge> = boundaries.iter().flatten().collect();
+    let of_edge = |edge: &Edge| Some(edges[edge.source.0 as usize - first].at(edge.a).velocity);
+    let seen = within.iter().map(|seen| seen.map(|(_, velocity)| velocity));
+    let velocities: Vec<Option<Vector>> = shape.iter().flatten().map(of_edge).chain(seen).collect();
+    let velocities = drawn_along(&velocities, &places, &found);
+    let carried = (shown.len()..places.len()).map(|k| Carried::within(places[k], velocities[k])).collect();
+    let within = (shown.len()..places.len()).map(|k| grid.snap(places[k] + steps[k])).collect();
+    Some((Cap { shape, within, triangles: found }, carried))
+}
+
+/// A place beside each of the first `count` of some `places` [m], in that of its triangles with the widest angle there.
+fn beside(places: &[Point], count: usize, triangles: &[[u32; 3]]) -> Vec<Point> {
+    /// Part of the way to the middle of the triangle.
+    const PART: f64 = 0.05;
+    let mut found = vec![(0.0, Point::origin()); count];
+    (0..count).for_each(|k| found[k].1 = places[k]);
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|corner| places[corner as usize]);
+        let middle = Point::from((a.coords + b.coords + c.coords) / 3.0);
+        for (corner, [at, p, q]) in
+            triangle.iter().map(|corner| *corner as usize).zip([[a, b, c], [b, c, a], [c, a, b]])
+        {
+            let angle = (p - at).angle(&(q - at));
+            if corner < count && angle > found[corner].0 {
+                found[corner] = (angle, at + PART * (middle - at));
+            }
         }
     }
-    Some((Cap { shape, within, triangles: found }, carried))
+    found.into_iter().map(|(_, place)| place).collect()
 }
 
 /// The number of the place of each corner, and the places at rest, in grid steps.
@@ -102,32 +166,92 @@ fn corners(boundaries: &[Vec<SourceEdge>], grid: Grid) -> (Vec<Vec<usize>>, Vec<
     (corners, places)
 }
 
-/// The places with the boundary among the edges; none if edges cross or have no length. `size`: of edges within, in
-/// grid steps.
-fn triangles(corners: &[Vec<usize>], places: Vec<Point2<f64>>, size: Option<f64>) -> Option<Delaunay> {
+fn rest_place(triangles: &Delaunay, vertex: usize, grid: Grid) -> Point {
+    let Point2 { x, y } = triangles.vertex(FixedVertexHandle::from_index(vertex)).position();
+    Point::new(x, y) * grid.step
+}
+
+/// The places with the boundary among the edges; none if edges cross or have no length. `step`: of the grid [m].
+fn triangles(corners: &[Vec<usize>], places: Vec<Point2<f64>>, division: RestDivision, step: f64) -> Option<Delaunay> {
     let pairs = corners.iter().flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)));
     let edges: BTreeSet<[usize; 2]> = pairs.map(|(&a, &b)| [a.min(b), a.max(b)]).collect();
     if edges.iter().any(|[a, b]| a == b) {
         return None;
     }
-    let count = places.len();
+    // What lies outside is divided too: `spade` does not know it from what lies beyond a crack. With a frame around it
+    // has no needles between the boundary and its convex hull.
+    let count = places.len() + 4;
+    let (low, high) = bounds(&places);
+    let margin = MARGIN * (high.x - low.x).max(high.y - low.y);
+    let [left, right] = [low.x - margin, high.x + margin];
+    let [bottom, top] = [low.y - margin, high.y + margin];
+    let mut places = places;
+    places.extend([(left, bottom), (right, bottom), (right, top), (left, top)].map(|(x, y)| Point2::new(x, y)));
     let mut crosses = false;
     let mut triangles = Delaunay::try_bulk_load_cdt(places, edges.into_iter().collect(), |_| crosses = true).ok()?;
     if crosses || triangles.num_vertices() != count {
         return None;
     }
-    let mut parameters = RefinementParameters::<f64>::new()
-        .keep_constraint_edges()
-        .with_angle_limit(AngleLimit::from_deg(SMALLEST_ANGLE));
-    if let Some(size) = size {
-        let area = 0.25 * 3.0_f64.sqrt() * size * size;
+    let area = |side: f64| 0.25 * 3.0_f64.sqrt() * (side / step).powi(2);
+    let mut parameters = RefinementParameters::<f64>::new().with_angle_limit(AngleLimit::from_deg(SMALLEST_ANGLE));
+    if division.least > 0.0 {
+        parameters = parameters.with_min_required_area(area(division.least));
+    }
+    if division.keeps_edges {
+        parameters = parameters.keep_constraint_edges();
+    }
+    if let Some(size) = division.size {
         let hull: f64 = triangles.inner_faces().map(|face| face.area()).sum();
         parameters = parameters
-            .with_max_allowed_area(area)
-            .with_max_additional_vertices(20 * count + (4.0 * hull / area) as usize);
+            .with_max_allowed_area(area(size))
+            .with_max_additional_vertices(20 * count + (4.0 * hull / area(size)) as usize);
     }
     triangles.refine(parameters);
     Some(triangles)
+}
+
+/// The box around some places.
+fn bounds(places: &[Point2<f64>]) -> (Point2<f64>, Point2<f64>) {
+    let all = |start: f64, best: fn(f64, f64) -> f64| {
+        let (x, y) = places.iter().fold((start, start), |(x, y), place| (best(x, place.x), best(y, place.y)));
+        Point2::new(x, y)
+    };
+    (all(f64::INFINITY, f64::min), all(f64::NEG_INFINITY, f64::max))
+}
+
+/// The new corners in the edges of the boundary.
+struct Chains {
+    /// Those between two corners, from the first to the second.
+    between: BTreeMap<[usize; 2], Vec<usize>>,
+}
+
+impl Chains {
+    /// Those of triangles whose first `old` corners were there before.
+    fn new(triangles: &Delaunay, old: usize) -> Self {
+        let ends = |vertex: usize| {
+            let vertex = triangles.vertex(FixedVertexHandle::from_index(vertex));
+            vertex.out_edges().filter(|edge| edge.is_constraint_edge()).map(|edge| edge.to().index())
+        };
+        let mut between = BTreeMap::new();
+        for start in 0..old {
+            for mut at in ends(start) {
+                let (mut before, mut chain) = (start, Vec::new());
+                // A new corner lies on one line.
+                while at >= old
+                    && let Some(next) = ends(at).find(|&next| next != before)
+                {
+                    chain.push(at);
+                    (before, at) = (at, next);
+                }
+                between.insert([start, at], chain);
+            }
+        }
+        Self { between }
+    }
+
+    fn between(&self, from: usize, to: usize) -> Option<&[usize]> {
+        self.between.get(&[from, to]).map(Vec::as_slice)
+    }
 }
 
 /// Which corner of the boundary each triangle has at each of its places.

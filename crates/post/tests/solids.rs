@@ -416,6 +416,62 @@ fn what_lies_beside_an_open_crack_goes_with_its_own_side() {
     }
 }
 
+/// The triangles of the front caps.
+fn front(meshes: &[Mesh]) -> Vec<[Point; 3]> {
+    let of_mesh = |mesh: &Mesh| {
+        let is_front = |t: &[u32; 3]| t.iter().all(|&i| mesh.vertices[i as usize].normal[2] == 1.0);
+        let place = |i: u32| mesh.vertices[i as usize].position;
+        mesh.all_triangles()
+            .filter(is_front)
+            .map(|t| t.map(|i| Point::new(place(i)[0], place(i)[1])))
+            .collect::<Vec<_>>()
+    };
+    meshes.iter().flat_map(of_mesh).collect()
+}
+
+/// Truth: by hand. Faces that have parted beside particles that know nothing of it: what lies between goes along.
+#[test]
+fn the_cut_at_rest_does_not_fold_where_particles_stay() {
+    let region = square(20.0);
+    let scene = scene(region.clone());
+    let rest: Vec<Point> = (0..=40).map(|i| Point::new(0.35 * f64::from(i), 10.0)).collect();
+    let opening: Vec<f64> = rest.iter().map(|p| 1.4 * (p.x * std::f64::consts::PI / 14.0).sin()).collect();
+    let frame = frame(&region, 40, &[Opened::symmetric(rest, &opening, CrackEnd::Mouth, CrackEnd::Tip)]);
+    for cap_size in [None, Some(0.2)] {
+        let options = PostOptions { cut: Cut::Rest, cap_size, ..options(&scene) };
+        let meshes = post_frame(&scene, &frame, &options).unwrap().parts.remove(0).1;
+        let folded = front(&meshes).into_iter().filter(|[a, b, c]| (b - a).perp(&(c - a)) <= 0.0).count();
+        assert_eq!(folded, 0, "{cap_size:?}");
+    }
+}
+
+/// Truth: what the guide promises of caps. A crack at rest with a short edge after a long one and a tip of another one
+/// beside it: no angle below 20 degrees, no edge below a ten-thousandth of the body, both faces with the same corners.
+#[test]
+fn caps_cut_at_rest_have_no_needles() {
+    let region = square(20.0);
+    let scene = scene(region.clone());
+    let closed = |rest: Vec<Point>| {
+        let opening = vec![0.0; rest.len()];
+        Opened::symmetric(rest, &opening, CrackEnd::Mouth, CrackEnd::Tip)
+    };
+    let row = [0.0, 9.0, 9.0004, 12.0, 12.0001, 12.0003, 17.0].map(|x| Point::new(x, 10.0)).to_vec();
+    let column = vec![Point::new(5.0, 0.0), Point::new(5.0, 9.8)];
+    let frame = frame(&region, 3, &[closed(row), closed(column)]);
+    let options = PostOptions { cut: Cut::Rest, ..options(&scene) };
+    let meshes = post_frame(&scene, &frame, &options).unwrap().parts.remove(0).1;
+    let triangles = front(&meshes);
+    for [a, b, c] in &triangles {
+        for [p, q, r] in [[a, b, c], [b, c, a], [c, a, b]] {
+            let angle = (q - p).angle(&(r - p)).to_degrees();
+            assert!(angle >= 20.0, "{angle} at {p}");
+            assert!((q - p).norm() >= 1e-4 * 20.0, "{p} {q}");
+        }
+    }
+    let area: f64 = triangles.iter().map(|[a, b, c]| 0.5 * (b - a).perp(&(c - a))).sum();
+    assert!((area - 400.0).abs() < 1e-3, "{area}");
+}
+
 /// Truth: by hand. A zigzag that cuts a square in two: smoothed, it keeps the areas of both halves and their sum to the
 /// grid, and its turns are a fraction of what they were.
 #[test]
