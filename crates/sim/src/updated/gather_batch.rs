@@ -73,6 +73,41 @@ struct Sums {
 impl Sums {
     const NONE: Self = Self { value: [0.0; BATCH], slopes: [[0.0; BATCH]; 2] };
 
+    /// As [`Sums::fill`], and those by `affine` weights into `turned`.
+    #[inline(always)]
+    fn fill_with<const W: usize>(
+        &mut self,
+        values: &[[Numbers; W]; W],
+        [x, y]: [&[Numbers; W]; 2],
+        [dx, dy]: [&[Numbers; W]; 2],
+        [ax, ay]: [&[Numbers; W]; 2],
+        turned: &mut Self,
+    ) {
+        for k in 0..BATCH {
+            let (mut value, mut along_x, mut along_y) = ([0.0; 2], [0.0; 2], [0.0; 2]);
+            let (mut turned_x, mut turned_y) = ([0.0; 2], [0.0; 2]);
+            for a in 0..W {
+                let (mut by_weight, mut by_slope, mut by_affine) = (0.0, 0.0, 0.0);
+                for b in 0..W {
+                    by_weight += y[b][k] * values[b][a][k];
+                    by_slope += dy[b][k] * values[b][a][k];
+                    by_affine += ay[b][k] * values[b][a][k];
+                }
+                value[a % 2] += by_weight * x[a][k];
+                along_x[a % 2] += by_weight * dx[a][k];
+                along_y[a % 2] += by_slope * x[a][k];
+                turned_x[a % 2] += by_weight * ax[a][k];
+                turned_y[a % 2] += by_affine * x[a][k];
+            }
+            self.value[k] = value[0] + value[1];
+            self.slopes[0][k] = along_x[0] + along_x[1];
+            self.slopes[1][k] = along_y[0] + along_y[1];
+            turned.value[k] = self.value[k];
+            turned.slopes[0][k] = turned_x[0] + turned_x[1];
+            turned.slopes[1][k] = turned_y[0] + turned_y[1];
+        }
+    }
+
     /// Sums up `values` of the nodes, by columns first.
     #[inline(always)]
     fn fill<const W: usize>(
@@ -143,6 +178,8 @@ pub(super) struct Batch<const W: usize> {
     values: [[[Numbers; W]; W]; 2],
     /// Sums of both components.
     sums: [Sums; 2],
+    /// The same by affine weights, where these go with the velocities themselves.
+    sums_turned: [Sums; 2],
     moved: Packed,
     strained: Packed,
     turned: Packed,
@@ -157,6 +194,7 @@ impl<const W: usize> Batch<W> {
         rows: [[0; BATCH]; W],
         values: [[[[0.0; BATCH]; W]; W]; 2],
         sums: [Sums::NONE; 2],
+        sums_turned: [Sums::NONE; 2],
         moved: Packed::NONE,
         strained: Packed::NONE,
         turned: Packed::NONE,
@@ -204,18 +242,23 @@ impl<const W: usize> Batch<W> {
     #[inline(always)]
     fn gather(&mut self, from: &FromGrid<'_>, count: usize, wanted: Wanted) {
         let nodes = from.nodes;
-        let Self { along: [x, y], rows, values, sums, .. } = self;
+        let Self { along: [x, y], rows, values, sums, sums_turned, .. } = self;
         let (weights, slopes, affine) = ([&x.weight, &y.weight], [&x.slope, &y.slope], [&x.affine, &y.affine]);
+        let is_both = wanted.affine && !wanted.gain;
         for axis in 0..2 {
             read(&mut values[axis], &nodes.after[axis], rows, count);
-            sums[axis].fill(&values[axis], weights, slopes);
+            if is_both {
+                sums[axis].fill_with(&values[axis], weights, slopes, affine, &mut sums_turned[axis]);
+            } else {
+                sums[axis].fill(&values[axis], weights, slopes);
+            }
         }
         self.moved.fill(sums);
-        if wanted.affine {
+        if is_both {
+            self.turned.fill(sums_turned);
+        } else if wanted.affine {
             for axis in 0..2 {
-                if wanted.gain {
-                    read(&mut values[axis], &nodes.gain[axis], rows, count);
-                }
+                read(&mut values[axis], &nodes.gain[axis], rows, count);
                 sums[axis].fill(&values[axis], weights, affine);
             }
             self.turned.fill(sums);
