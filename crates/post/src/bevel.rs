@@ -10,14 +10,15 @@
 //! above, strips and cap fill the polygon without folds: what was a solid stays one. Where that leaves no room, between
 //! cracks or along segments that are short, strips are narrower; at outlines, tips and sharp corners they end.
 
-use crate::boolean::Edge;
+use crate::boolean::{Edge, Shape};
 use crate::extrude::{Extrusion, wall_normal};
 use crate::mesh::{Mesh, Vertex};
 use crate::slot::Slot;
 use crate::snap::GridPoint;
 use crate::source::Carried;
-use crate::triangulate::Cap;
+use crate::triangulate::{Cap, Division, inwards, triangulate};
 use fissure_scene::Vector;
+use spade::Point2;
 
 /// How wide bevels are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,7 +47,60 @@ pub(crate) struct BevelCorner {
     pub(crate) drop: f64,
 }
 
+/// A cap, and where its corners on the boundary go, contour after contour.
+pub(crate) type BevelledCap = (Cap, Vec<BevelCorner>);
+
 impl Extrusion<'_> {
+    /// A cap whose triangles are made anew within its bevels: where they go inwards, triangles of the whole polygon
+    /// become narrow. New corners in edges of the inner polygon are new ones of the outer polygon, too. None where
+    /// nothing is bevelled.
+    pub(crate) fn bevelled(&self, cap: &Cap, division: Division) -> Option<BevelledCap> {
+        let corners = self.bevel(cap);
+        if corners.iter().all(|corner| corner.drop == 0.0) {
+            return None;
+        }
+        let mut first = 0;
+        let mut inner = Shape::with_capacity(cap.shape.len());
+        for contour in &cap.shape {
+            let at = |i: usize| corners[first + i % contour.len()].point;
+            inner.push(contour.iter().enumerate().map(|(i, edge)| Edge { a: at(i), b: at(i + 1), ..*edge }).collect());
+            first += contour.len();
+        }
+        let fine = triangulate(&inner, division);
+        let (mut shape, mut all) = (Shape::with_capacity(cap.shape.len()), Vec::new());
+        let mut first = 0;
+        for ((contour, inner), fine) in cap.shape.iter().zip(&inner).zip(&fine.shape) {
+            let (mut edges, mut parts) = (Vec::with_capacity(fine.len()), fine.iter().peekable());
+            for (i, (edge, of_inner)) in contour.iter().zip(inner).enumerate() {
+                let [p, q] = [i, (i + 1) % contour.len()].map(|k| corners[first + k]);
+                let mut place = edge.a;
+                all.push(p);
+                loop {
+                    let part = parts.next()?;
+                    if part.b == of_inner.b {
+                        break;
+                    }
+                    let far = distance(of_inner.a, part.b) / distance(of_inner.a, of_inner.b);
+                    let next = if p.drop == 0.0 && q.drop == 0.0 { part.b } else { between(edge, far) };
+                    edges.push(Edge { a: place, b: next, ..*edge });
+                    all.push(BevelCorner {
+                        point: part.b,
+                        at_rest: p.at_rest + far * (q.at_rest - p.at_rest),
+                        drop: p.drop + far * (q.drop - p.drop),
+                    });
+                    place = next;
+                }
+                edges.push(Edge { a: place, ..*edge });
+            }
+            if parts.peek().is_some() {
+                return None;
+            }
+            shape.push(edges);
+            first += contour.len();
+        }
+        Some((Cap { shape, ..fine }, all))
+    }
+
     /// The corners of a cap, contour after contour; as they are where edges are not bevelled.
     pub(crate) fn bevel(&self, cap: &Cap) -> Vec<BevelCorner> {
         let edges: Vec<&Edge> = cap.shape.iter().flatten().collect();
@@ -152,6 +206,16 @@ impl Extrusion<'_> {
     }
 }
 
+fn distance(p: GridPoint, q: GridPoint) -> f64 {
+    ((q.x - p.x) as f64).hypot((q.y - p.y) as f64)
+}
+
+/// A place on an edge, a `part` of its length from its start.
+fn between(edge: &Edge, part: f64) -> GridPoint {
+    let way = |from: i64, to: i64| from as f64 + part * (to - from) as f64;
+    inwards(edge, Point2::new(way(edge.a.x, edge.b.x), way(edge.a.y, edge.b.y)))
+}
+
 fn moved(point: GridPoint, way: Vector) -> GridPoint {
     GridPoint::new(point.x + way.x.round() as i64, point.y + way.y.round() as i64)
 }
@@ -170,7 +234,6 @@ fn twice(a: GridPoint, b: GridPoint, c: GridPoint) -> f64 {
 /// strips keep their sense. A width below `least` grid steps becomes none.
 fn narrow(cap: &Cap, ways: &[Vector], widths: &mut [f64], least: f64) {
     let old: Vec<GridPoint> = cap.corners().collect();
-    let distance = |p: GridPoint, q: GridPoint| ((q.x - p.x) as f64).hypot((q.y - p.y) as f64);
     loop {
         let outer = |k: usize| widths.get(k).is_some_and(|width| *width > 0.0);
         let new: Vec<GridPoint> =

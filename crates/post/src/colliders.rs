@@ -70,7 +70,10 @@ fn collider_mesh(
     let content = Content::Solid { area, thickness: options.thickness, slack: 0.0 };
     let mut mesh = Mesh::new(object_name(&collider.name, "collider", index), index, content);
     mesh.texture_size = options.uv_in_metres.then_some(extrusion.texture_size);
-    shapes.iter().for_each(|shape| extrusion.solid(&triangulate(shape, Division::Plain), &[], &mut mesh));
+    for shape in &shapes {
+        let cap = triangulate(shape, Division::Plain);
+        extrusion.solid(&cap, &extrusion.bevel(&cap), &[], &mut mesh);
+    }
     let defect = |defect| PostError::Defect { frame: frame.number, mesh: mesh.name.clone(), defect };
     mesh.check().map_err(defect)?;
     Ok(mesh)

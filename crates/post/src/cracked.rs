@@ -1,6 +1,6 @@
 //! The bodies as solids, with or without their cracks.
 
-use crate::bevel::BevelSize;
+use crate::bevel::{BevelCorner, BevelSize, BevelledCap};
 use crate::body_names::body_names;
 use crate::boolean::{Edge, Shape, SourceIndex, common, material, twice_area};
 use crate::closed::shifts as closed;
@@ -355,12 +355,24 @@ impl<'a> Solids<'a> {
         let shown = fragment.shapes.iter().filter(|shape| area(shape, grid) >= options.smallest_fragment);
         let division = Division::Fine { size: options.cap_size.map(|size| size / grid.step) };
         let extrusion = self.extrusion(body, &fragment.sources);
-        let carried = |cap: Cap| {
+        let carried = |(cap, bevel): BevelledCap| {
             let within = self.interiors[body as usize].of_cap(&cap, &extrusion, piece);
-            (cap, within)
+            SolidCap { cap, bevel, within }
         };
-        let caps = shown.map(|shape| carried(triangulate(shape, division))).collect();
-        self.mesh(body, piece, &extrusion, caps)
+        let caps: Vec<Cap> = shown.map(|shape| triangulate(shape, division)).collect();
+        let with_bevel = |cap: Cap| {
+            let bevel = extrusion.bevel(&cap);
+            (cap, bevel)
+        };
+        if extrusion.bevel.is_some() && !caps.is_empty() {
+            let fine = |cap: &Cap| extrusion.bevelled(cap, division).unwrap_or_else(|| with_bevel(cap.clone()));
+            let fine: Vec<SolidCap> = caps.iter().map(|cap| carried(fine(cap))).collect();
+            let mesh = self.made(body, piece, &extrusion, &fine);
+            if mesh.check().is_ok() {
+                return Some(mesh);
+            }
+        }
+        self.mesh(body, piece, &extrusion, caps.into_iter().map(|cap| carried(with_bevel(cap))).collect())
     }
 
     /// Extrudes the triangles of `fragments` at rest, moved with the material. None where that is no solid: where the
@@ -397,7 +409,9 @@ impl<'a> Solids<'a> {
             sources.extend(boundaries.into_iter().flatten());
         }
         caps.retain(|(cap, _)| area(&cap.shape, grid) >= self.options.smallest_fragment);
-        let mesh = self.mesh(body, piece, &self.extrusion(body, &sources), caps);
+        let extrusion = self.extrusion(body, &sources);
+        let with_bevel = |(cap, within): (Cap, Vec<Carried>)| SolidCap { bevel: extrusion.bevel(&cap), cap, within };
+        let mesh = self.mesh(body, piece, &extrusion, caps.into_iter().map(with_bevel).collect());
         mesh.as_ref().is_none_or(|mesh| (self.check)(mesh).is_ok()).then_some(mesh)
     }
 
@@ -423,23 +437,36 @@ impl<'a> Solids<'a> {
 
     /// The solid of some polygons, with what their corners within carry; none of none. Its walls are smooth and its
     /// edges sharp where it is no solid otherwise: faces that are open by a few grid steps may meet there.
-    fn mesh(&self, body: u32, piece: u32, extrusion: &Extrusion<'_>, caps: Vec<(Cap, Vec<Carried>)>) -> Option<Mesh> {
-        let area = caps.iter().map(|(cap, _)| area(&cap.shape, extrusion.grid)).sum();
-        let made = |extrusion: &Extrusion<'_>| {
-            let name = object_name(&self.names[body as usize], "piece", piece);
-            let content = Content::Solid { area, thickness: self.options.thickness, slack: 0.0 };
-            let mut mesh = Mesh::new(name, piece, content);
-            mesh.texture_size = self.options.uv_in_metres.then_some(extrusion.texture_size);
-            mesh.attributes.clone_from(&self.attributes);
-            caps.iter().for_each(|(cap, within)| extrusion.solid(cap, within, &mut mesh));
-            mesh
-        };
-        let mut mesh = made(extrusion);
+    fn mesh(&self, body: u32, piece: u32, extrusion: &Extrusion<'_>, mut caps: Vec<SolidCap>) -> Option<Mesh> {
+        let mut mesh = self.made(body, piece, extrusion, &caps);
         if (extrusion.relief.is_some() || extrusion.bevel.is_some()) && mesh.check().is_err() {
-            mesh = made(&Extrusion { relief: None, bevel: None, ..*extrusion });
+            let plain = Extrusion { relief: None, bevel: None, ..*extrusion };
+            caps.iter_mut().for_each(|cap| cap.bevel = plain.bevel(&cap.cap));
+            mesh = self.made(body, piece, &plain, &caps);
         }
         (!caps.is_empty()).then_some(mesh)
     }
+
+    /// The solid of some polygons.
+    fn made(&self, body: u32, piece: u32, extrusion: &Extrusion<'_>, caps: &[SolidCap]) -> Mesh {
+        let area = caps.iter().map(|of| area(&of.cap.shape, extrusion.grid)).sum();
+        let name = object_name(&self.names[body as usize], "piece", piece);
+        let content = Content::Solid { area, thickness: self.options.thickness, slack: 0.0 };
+        let mut mesh = Mesh::new(name, piece, content);
+        mesh.texture_size = self.options.uv_in_metres.then_some(extrusion.texture_size);
+        mesh.attributes.clone_from(&self.attributes);
+        caps.iter().for_each(|of| extrusion.solid(&of.cap, &of.bevel, &of.within, &mut mesh));
+        mesh
+    }
+}
+
+/// A polygon that becomes a solid.
+struct SolidCap {
+    cap: Cap,
+    /// Where its corners on the boundary go.
+    bevel: Vec<BevelCorner>,
+    /// What its corners within carry.
+    within: Vec<Carried>,
 }
 
 /// Area of a polygon [m²].

@@ -37,14 +37,14 @@ pub(crate) struct Extrusion<'a> {
 }
 
 impl Extrusion<'_> {
-    /// Adds the caps and walls of a polygon to `mesh`. `within`: what its corners within carry, in their order.
-    pub(crate) fn solid(&self, cap: &Cap, within: &[Carried], mesh: &mut Mesh) {
+    /// Adds the caps and walls of a polygon to `mesh`. `bevel`: where its corners on the boundary go;
+    /// `within`: what its corners within carry, in their order.
+    pub(crate) fn solid(&self, cap: &Cap, bevel: &[BevelCorner], within: &[Carried], mesh: &mut Mesh) {
         // Two caps, and walls that are smooth: what creases need comes on top.
         let corners = cap.shape.iter().map(Vec::len).sum::<usize>();
         mesh.vertices.reserve(2 * (corners + within.len()) + 2 * (corners + cap.shape.len()));
         mesh.triangles[Slot::Outside as usize].reserve(2 * cap.triangles.len());
-        let bevel = self.bevel(cap);
-        self.caps(cap, within, &bevel, mesh);
+        self.caps(cap, within, bevel, mesh);
         let (mut first, mut removed) = (0, 0.0);
         for contour in &cap.shape {
             let corners = &bevel[first..first + contour.len()];

@@ -34,8 +34,17 @@ proptest! {
         for (before, after) in before.iter().zip(&after) {
             prop_assert!(after.triangle_count() > before.triangle_count() && after.volume() < before.volume());
             let is_wall = |t: &[Vector3<f64>; 3]| t.iter().any(|p| p.z < 0.0) && t.iter().any(|p| p.z > 0.0);
-            let drawn = |mesh| triangles(mesh, Slot::Outside).into_iter().filter(is_wall).collect::<Vec<_>>();
-            prop_assert_eq!(drawn(before), drawn(after));
+            // They may have other corners than before.
+            let drawn = |mesh| {
+                let walls = triangles(mesh, Slot::Outside).into_iter().filter(is_wall);
+                walls.map(|[a, b, c]| 0.5 * (b - a).cross(&(c - a)).norm()).sum::<f64>()
+            };
+            prop_assert!((drawn(before) - drawn(after)).abs() < 1e-3, "{} {}", drawn(before), drawn(after));
+            let places = |mesh| {
+                let walls = triangles(mesh, Slot::Outside).into_iter().filter(is_wall);
+                walls.flatten().fold([f64::INFINITY, 0.0], |[low, high], p| [low.min(p.x), f64::max(high, p.y)])
+            };
+            prop_assert_eq!(places(before), places(after));
             let all = [Slot::Inside, Slot::Outside].map(|slot| triangles(after, slot)).concat();
             for (i, p) in triangles(after, Slot::Inside).iter().enumerate() {
                 for q in &all[i + 1..] {
@@ -50,6 +59,28 @@ proptest! {
                 }
             }
         }
+    }
+
+    /// Truth: what is promised of caps. Bevelled ones have hardly a narrower angle than sharp ones.
+    #[test]
+    fn caps_within_bevels_have_no_needles(
+        trunk in proptest::collection::vec(-0.4..0.4_f64, 10..40), bevel in 0.05..0.3_f64,
+    ) {
+        let rest = path(Point::new(10.0, 0.0), Point::new(10.0, SIZE), &trunk);
+        let moved = |x: f64| vec![Vector::new(x, 0.0); rest.len()];
+        let crack = Opened {
+            above: moved(-0.1), below: moved(0.1), start: CrackEnd::Mouth, end: CrackEnd::Mouth, rest: rest.clone(),
+        };
+        let region = square(SIZE);
+        let frame = frame(&region, 2, &[crack]);
+        let sharpest = |meshes: &[Mesh]| {
+            let caps = meshes.iter().flat_map(|mesh| triangles(mesh, Slot::Outside));
+            let front = caps.filter(|t| t.iter().all(|p| p.z == 1.5));
+            let angles = front.flat_map(|[a, b, c]| [[a, b, c], [b, c, a], [c, a, b]]);
+            angles.map(|[a, b, c]| (b - a).angle(&(c - a)).to_degrees()).fold(180.0, f64::min)
+        };
+        let [before, after] = solids(&scene(region), &frame, bevel).map(|meshes| sharpest(&meshes));
+        prop_assert!(after > 15.0 || after > before - 3.0, "{} {}", before, after);
     }
 
     /// Truth: closed form. Along a straight wall of length L in segments of length s, bevels of width w take off two
