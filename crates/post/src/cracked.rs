@@ -7,7 +7,7 @@ use crate::closed::shifts as closed;
 use crate::crumbs::hold_crumb;
 use crate::edges::MovedLines;
 use crate::error::PostError;
-use crate::explode::offsets;
+use crate::explode::{together, ways};
 use crate::extrude::Extrusion;
 use crate::held_open::{parted_points, shifts as held_open};
 use crate::history::{attributes, histories};
@@ -70,9 +70,11 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
         histories = histories.map(|all| all.iter().zip(&kept).map(|(of_crack, kept)| picked(of_crack, kept)).collect());
     }
     let numbers = numbers(&fragments, frame);
-    let offsets = options.explode.as_ref().map(|curve| offsets(frame, curve.value(frame.time))).unwrap_or_default();
+    let factor = options.explode.as_ref().map_or(0.0, |curve| curve.value(frame.time));
+    let ways = if factor == 0.0 { BTreeMap::new() } else { ways(frame) };
     let mut shifts = shifts(scene, frame.time, &cracks.cracks, options);
-    let beyond = farthest(offsets.values()) + farthest(shifts.iter().flatten().flat_map(|s| [&s.above, &s.below]));
+    let beyond =
+        factor.abs() * farthest(ways.values()) + farthest(shifts.iter().flatten().flat_map(|s| [&s.above, &s.below]));
     let grids = grids(scene, frame, &cracks.cracks, beyond)?;
     let parted = parted_points(&cracks.cracks, &fragments, &numbers);
     for ((crack, parted), shifts) in cracks.cracks.iter().zip(parted).zip(&mut shifts) {
@@ -117,6 +119,15 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
     if options.cut == Cut::Rest {
         (0..).zip(&mut solids.interiors).for_each(|(body, interior)| interior.part(body, &cracks));
     }
+    let ways = if ways.is_empty() {
+        ways
+    } else {
+        let enclosed = |(&object, fragments): (&ObjectKey, &Vec<Vec<Vec<SourceEdge>>>)| {
+            (object, material(&fragments.iter().flatten().flatten().copied().collect::<Vec<_>>()))
+        };
+        let largest = options.explode.iter().flat_map(|curve| &curve.points).map(|point| point.1).fold(0.0, f64::max);
+        together(ways, objects.iter().map(enclosed).collect(), &grids, largest)
+    };
     let mut meshes = BTreeMap::new();
     let mut opened = Boundaries::new();
     for ((body, piece), fragments) in objects {
@@ -131,7 +142,7 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
     meshes.extend(solids.opened(&opened)?);
     // What has been checked stays as it is: the grid reaches so far.
     let apart = |(object, mesh): (ObjectKey, Mesh)| {
-        let offset = offsets.get(&object).copied().unwrap_or_default();
+        let offset = factor * ways.get(&object).copied().unwrap_or_default();
         mesh.moved(grids[object.0 as usize].nearest(offset))
     };
     Ok(meshes.into_iter().map(apart).collect())
