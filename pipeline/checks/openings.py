@@ -1,6 +1,7 @@
 """The area that a take's cracks lose to the opening that its scene asks for."""
 
 import numpy
+import shapely
 
 # Faces farther apart than this many cells are moved no farther.
 REACH = 2.0
@@ -17,12 +18,19 @@ def normals(face):
     return numpy.stack([-along[:, 1], along[:, 0]], axis=1) / numpy.where(length == 0, 1, length)
 
 
+def strip(near, far, chosen):
+    """The places between two lines at the chosen ones of their segments; what overlaps counts once."""
+    quads = numpy.stack([near[:-1], near[1:], far[1:], far[:-1]], axis=1)[chosen]
+    parts = shapely.make_valid(shapely.polygons(quads)) if len(quads) else []
+    return shapely.union_all(parts)
+
+
 def taken_off(frame, scene):
-    """Area that `output.opening` of a take's `scene` takes off in one of its frames, of all cracks [m²].
+    """Area of the body that `output.opening` of a take's `scene` takes off in one of its frames [m²].
 
     As docs/formats.md tells of it: a crack is open by `least` at least, towards its tips less by the root of the way to
-    them over `falloff`, and all of it times the factor. Where cracks meet each other or an outline their openings have a
-    little in common.
+    them over `falloff`, and all of it times the factor. What openings have in common counts once, and what was
+    open before not at all. Faces may only move into their own fragments: where a fragment is narrower than that, too much is told.
     """
     opening = scene["output"]["opening"]
     if opening is None:
@@ -30,7 +38,7 @@ def taken_off(frame, scene):
     times, factors = numpy.array(opening["factor"]["points"], dtype=float).T
     factor = numpy.interp(frame["frame.time"][0], times, factors)
     reach = max(REACH * scene["cell_size"], opening["least"])
-    area = 0.0
+    wider, narrower, gaps = [], [], []
     begins = frame["cracks.offset"]
     for (begin, end), (start_on, end_on) in zip(zip(begins[:-1], begins[1:]), frame["cracks.ends"]):
         above, below, rest = (frame[f"cracks.{name}"][begin:end] for name in ("above", "below", "rest"))
@@ -42,6 +50,13 @@ def taken_off(frame, scene):
         width = ((above - below) * across).sum(axis=1)
         shown = numpy.maximum(width, opening["least"] * near_tip)
         change = numpy.where(near_tip == 0, 0, shown - width + (factor - 1) * numpy.clip(shown, 0, reach))
-        length = numpy.linalg.norm(numpy.diff((above + below) / 2, axis=0), axis=1)
-        area += (length * (change[1:] + change[:-1]) / 2).sum()
-    return area
+        apart = 0.5 * change[:, None] * across
+        grows = change[1:] + change[:-1] > 0
+        for face, sign in ((above, 1), (below, -1)):
+            wider.append(strip(face, face + sign * apart, grows))
+            narrower.append(strip(face, face + sign * apart, ~grows))
+        # Farther apart there may be anything between faces.
+        near = numpy.abs(width) < reach
+        gaps.append(strip(above, below, near[1:] & near[:-1] & (width[1:] + width[:-1] > 0)))
+    wider = shapely.union_all(wider).difference(shapely.union_all(gaps))
+    return wider.area - shapely.union_all(narrower).area
