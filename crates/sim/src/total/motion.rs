@@ -140,15 +140,17 @@ impl Motion {
         (self.in_step, self.last_kick) = (false, kick);
         let (decay, push) = ((-damping * kick).exp(), kick / force_of_impulse(damping, kick));
         let part = threads::part(inverse_mass.len());
-        for axis in 0..2 {
-            let (force, gravity) = (&self.force[axis], gravity[axis]);
-            let lists = [&mut self.velocity[axis], &mut self.before_kick[axis]].map(Vec::as_mut_slice);
-            threads::share_out(lists, part, &|start, [velocity, before]| {
-                let fields = start..start + velocity.len();
-                let (force, inverse_mass) = (&force[fields.clone()], &inverse_mass[fields]);
+        let Self { velocity: [velocity_x, velocity_y], before_kick: [before_x, before_y], force: all, .. } = self;
+        // Both axes at once: to share out takes as long as some thousand fields.
+        let lists = [velocity_x, before_x, velocity_y, before_y].map(Vec::as_mut_slice);
+        threads::share_out(lists, part, &|start, [velocity_x, before_x, velocity_y, before_y]| {
+            let fields = start..start + velocity_x.len();
+            let inverse_mass = &inverse_mass[fields.clone()];
+            for (axis, velocity, before) in [(0, velocity_x, before_x), (1, velocity_y, before_y)] {
+                let (force, gravity) = (&all[axis][fields.clone()], gravity[axis]);
                 run_widest(Kick { velocity, before, force, inverse_mass, gravity, decay, push });
-            });
-        }
+            }
+        });
         kick
     }
 
@@ -165,12 +167,13 @@ impl Motion {
     /// u += Δt v.
     pub(super) fn drift(&mut self, time_step: f64) {
         let part = threads::part(self.velocity[0].len());
-        for (displacement, velocity) in self.displacement.iter_mut().zip(&self.velocity) {
-            threads::share_out([displacement], part, &|start, [displacement]| {
+        let (displacement, velocity) = (&mut self.displacement, &self.velocity);
+        threads::share_out(displacement.each_mut().map(Vec::as_mut_slice), part, &|start, parts| {
+            for (displacement, velocity) in parts.into_iter().zip(velocity) {
                 let velocity = &velocity[start..start + displacement.len()];
                 run_widest(Drift { displacement, velocity, time_step });
-            });
-        }
+            }
+        });
         self.last_step = time_step;
     }
 
