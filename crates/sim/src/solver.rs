@@ -141,6 +141,9 @@ pub(crate) trait SlidingTips {
     /// Energy that drag behind a tip has taken out of the body since the last call [J/m].
     fn take_drag(&mut self, id: TipId) -> f64;
 
+    /// Energy that tips have given in the last step for what their cuts had left strained without force [J/m].
+    fn take_settled(&mut self) -> Vec<(TipId, f64)>;
+
     /// Follows an end that has moved on along its segment since the last recut, by an increment at most.
     fn slide(&mut self, cracks: &Cracks, id: TipId);
 }

@@ -39,7 +39,21 @@ impl Simulation {
         tip.most_balance = BALANCE_CELLS * self.scene.cell_size * cost;
         let carried = if tip.is_free { MOST_CARRIED } else { 1.0 };
         let kept = tip.balance.min(carried * tip.most_balance);
-        tip.balance = if tip.state == TipState::Growing { kept + dragged } else { 0.0 };
+        if tip.state == TipState::Growing {
+            tip.balance = kept + dragged;
+        } else {
+            tip.left_over += kept + dragged;
+            tip.balance = 0.0;
+        }
+    }
+
+    /// Tips pay for what their cuts had left strained and the last step has let go of.
+    pub(super) fn settle_strains(&mut self) {
+        let Some(sliding) = self.solver.sliding_mut() else { return };
+        for (id, energy) in sliding.take_settled() {
+            self.state.crack_energy -= energy;
+            self.state.cracks.tip_mut(id).into_iter().for_each(|tip| tip.pay(energy));
+        }
     }
 
     /// Lets a tip run through its increment as far as it can pay. Whether it has come to the end of it.
@@ -50,15 +64,20 @@ impl Simulation {
         let cracks = &self.state.cracks;
         let Some(tip) = cracks.tip(id) else { return false };
         let Some(left) = cracks.left_of_increment(id) else { return true };
-        let (cost, most) = match growth::cost(cracks, id, assessed, &self.scene, &self.elastic, time) {
-            Cost::Scheduled(due) => (0.0, due),
-            Cost::Energy(cost) => (cost, f64::INFINITY),
-        };
-        let most = most.min(left).min(-tip.ahead_of_limit);
+        let cost = growth::cost(cracks, id, assessed, &self.scene, &self.elastic, time);
+        let most = left.min(-tip.ahead_of_limit).max(0.0);
         let balance = tip.balance;
         let Some(sliding) = self.solver.sliding() else { return true };
         let release = sliding.release(cracks, id);
-        let distance = affordable(most, |distance| balance + release(distance) - cost * distance);
+        let (distance, cost) = match cost {
+            // What is due is due, whatever the tip has.
+            Cost::Scheduled(due) => (most.min(due).max(0.0), 0.0),
+            Cost::Energy(cost) => {
+                // In debt it goes on if that pays for the way and something of the debt.
+                let (means, asked) = (balance.max(0.0), cost * (1.0 + tip.surcharge()));
+                (affordable(most, |distance| means + release(distance) - asked * distance), cost)
+            }
+        };
         let arrives = distance >= left;
         if !arrives && distance < LEAST_SLIDE * self.scene.cell_size {
             return false;
@@ -66,7 +85,8 @@ impl Simulation {
         let taken = release(distance);
         self.state.cracks.slide(id, distance);
         if let Some(tip) = self.state.cracks.tip_mut(id) {
-            tip.balance = (balance + taken - cost * distance).max(0.0);
+            // What the search is off by is no debt.
+            tip.balance = (balance + taken - cost * distance).max(balance.min(0.0));
         }
         self.state.crack_energy += taken;
         if let Some(sliding) = self.solver.sliding_mut() {

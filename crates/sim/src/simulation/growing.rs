@@ -5,6 +5,7 @@ use super::stages::Stage;
 use crate::SimulationError;
 use crate::crack::assessment::Assessment;
 use crate::crack::cracks::{Cracks, TipId};
+use crate::crack::tip::Tip;
 use crate::growth::{self, Advance};
 use crate::solver::Observed;
 use crate::tip::gauge::Gauge;
@@ -128,6 +129,7 @@ impl Simulation {
             }
         }
         let time = state.time + time_step;
+        self.settle_strains();
         let mut tips = Vec::with_capacity(live.len());
         for (id, assessed) in live.into_iter().zip(assessed) {
             // What has not been measured anew is as it was; such a tip does not grow.
@@ -185,7 +187,8 @@ impl Simulation {
             }
             sliding.retain(|tip| {
                 let arrives = self.slide(tip.id, &tip.assessed, time);
-                if !arrives {
+                // One that stands only until it can pay a debt has not come to rest.
+                if !arrives && !self.state.cracks.tip(tip.id).is_some_and(Tip::is_in_debt) {
                     self.rest(tip.id);
                 }
                 arrives
@@ -248,9 +251,9 @@ impl Simulation {
             // Held by its limit alone, a tip does not come to rest.
             Decision::Wait => self.forget_rest(id),
             Decision::GoOn => {
-                if let Some(tip) = self.state.cracks.tip_mut(id) {
-                    // It may have come to rest on its way.
-                    tip.state = TipState::Growing;
+                if let Some(tip) = self.state.cracks.tip_mut(id).filter(|tip| tip.state != TipState::Growing) {
+                    // It had come to rest on its way, and starts anew.
+                    (tip.state, tip.time_at_rest) = (TipState::Growing, 0.0);
                 }
                 return true;
             }

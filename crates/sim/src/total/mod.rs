@@ -34,6 +34,7 @@ mod riders;
 mod rows;
 mod run;
 mod segment_normals;
+mod settling;
 mod snapshot;
 mod stability;
 mod stiffening;
@@ -95,6 +96,8 @@ pub(crate) struct Total {
     reactions: Vec<Reaction>,
     stiffening: Stiffening,
     steps_since_check: u32,
+    /// What tips have given in the last step for what their cuts had left strained [J/m].
+    settled: Vec<(TipId, f64)>,
     /// The largest stable step of material that is not stretched [s], once it is found; a cut changes it.
     step_at_rest: OnceLock<f64>,
 }
@@ -107,9 +110,6 @@ type Done = ([f64; 4], Vec<Reaction>);
 
 /// Steps between two checks that everything is still finite and in range.
 const STEPS_BETWEEN_CHECKS: u32 = 8;
-
-/// Time in which misfits fall to 1/e, over the time a wave takes for a cell.
-const SETTLING: f64 = 8.0;
 
 impl Total {
     /// Lays the lattice and cuts it by the initial cracks.
@@ -189,6 +189,7 @@ impl Total {
             reactions: done.1,
             stiffening,
             steps_since_check: 0,
+            settled: Vec::new(),
             step_at_rest: OnceLock::new(),
         })
     }
@@ -234,16 +235,6 @@ impl Total {
     /// What loads do from the moment of the velocities to that of the displacements [J/m].
     fn work_of_lag(&self) -> f64 {
         self.motion.lag() * (self.power_of_loads + self.power_of_gravity)
-    }
-
-    /// Lets go of the misfits that recuts have left, for a step of `time_step` [s].
-    fn settle(&mut self, time_step: f64) {
-        let kept = (-time_step / (SETTLING * self.lattice.crossing_time())).exp();
-        let Lattice { layout, particles, materials, .. } = &mut self.lattice;
-        for rows in [&mut layout.cut, &mut layout.far] {
-            rows.relax_misfits(kept, particles, materials, &self.motion.displacement);
-        }
-        self.ties.relax(kept);
     }
 
     /// Checks now and then that the run is sound.
@@ -326,7 +317,7 @@ impl Solver for Total {
         observe(&self.look(0.5 * time_step));
         // u += Δt v.
         self.motion.drift(time_step);
-        self.settle(time_step);
+        self.settle(cracks, time_step);
         self.watch(time + time_step)
     }
 
@@ -467,6 +458,10 @@ impl SlidingTips for Total {
 
     fn take_drag(&mut self, id: TipId) -> f64 {
         self.ties.take_drag(id)
+    }
+
+    fn take_settled(&mut self) -> Vec<(TipId, f64)> {
+        std::mem::take(&mut self.settled)
     }
 
     fn slide(&mut self, cracks: &Cracks, id: TipId) {

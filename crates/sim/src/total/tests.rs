@@ -136,7 +136,9 @@ fn sum_of_strains(total: &Total) -> fissure_plane::Matrix {
 /// than material of both sides mixes, and what the ties hold does not rise.
 #[test]
 fn a_turning_crack_leaves_the_strain_as_it_is() {
-    let (mut total, mut cracks) = opened();
+    let mut scene = cracked_plate();
+    scene.cracks[0].end_live = true;
+    let (mut total, mut cracks) = opened_in(scene);
     let ties = total.ties.energy(&total.motion.displacement);
     let lattice = total.energies().strain - ties;
     let tip = cracks.position(TIP);
@@ -150,13 +152,14 @@ fn a_turning_crack_leaves_the_strain_as_it_is() {
     assert!(lattice_after <= lattice * (1.0 + 1e-12), "{lattice} {lattice_after}");
     assert!(lattice_after > lattice * (1.0 - 5e-3), "{lattice} {lattice_after}");
     assert!(ties_after <= ties * (1.0 + 1e-12), "{ties} {ties_after}");
-    // The strain that no field accounts for is let go of.
+    // The strain that no field accounts for is let go of, as far as the tip has something to give for it.
     let misfit = |total: &Total| -> f64 {
         (0..total.lattice.particles.len()).map(|p| total.lattice.layout.cut.misfit_of(p).norm()).fold(0.0, f64::max)
     };
     let first = misfit(&total);
     assert!(first > 1e-6, "{first}");
     let time_step = 0.5 * total.stable_time_step();
+    cracks.tip_mut(TIP).unwrap().left_over = lattice;
     for step in 0..400 {
         total.step(&cracks, time_step * f64::from(step), time_step, &mut |_| ()).unwrap();
     }

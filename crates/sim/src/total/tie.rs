@@ -159,9 +159,17 @@ impl Tie {
         std::mem::take(&mut self.dragged)
     }
 
-    /// Lets go of the opening without force but the part `kept`.
-    pub(super) fn relax(&mut self, kept: f64) {
+    /// Whether it has an opening without force.
+    pub(super) fn is_misfit(&self) -> bool {
+        self.rest != Vector::zeros()
+    }
+
+    /// Lets go of the opening without force but the part `kept`. Returns the energy that it gains by it for the
+    /// displacement `u` [J/m].
+    pub(super) fn let_go(&mut self, kept: f64, u: &FieldVectors) -> f64 {
+        let before = self.energy(u);
         self.rest *= kept;
+        self.energy(u) - before
     }
 
     /// Softens the tie to where it is when the tip is `ahead` cells from its node.

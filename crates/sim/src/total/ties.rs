@@ -261,11 +261,21 @@ impl Ties {
         self.at_node.insert(node, Coupled { members, fields, mixing });
     }
 
-    /// Lets go of all openings without force but the part `kept`.
-    pub(super) fn relax(&mut self, kept: f64) {
-        for tie in self.of_tip.values_mut().flatten() {
-            tie.relax(kept);
+    /// Tells of all ties with an opening without force: its tip, its number, and the energy that it gains when but the
+    /// part `kept` of that is let go of, for the displacement `u` [J/m].
+    pub(super) fn each_misfit(&self, kept: f64, u: &FieldVectors, each: &mut dyn FnMut(TipId, usize, f64)) {
+        for (&id, ties) in &self.of_tip {
+            for (k, tie) in ties.iter().enumerate().filter(|(_, tie)| tie.is_misfit()) {
+                let mut after = *tie;
+                each(id, k, after.let_go(kept, u));
+            }
         }
+    }
+
+    /// Lets go of the opening without force of a tie but the part `kept`. Returns the energy that it gains by it [J/m].
+    pub(super) fn let_go(&mut self, id: TipId, index: usize, kept: f64, u: &FieldVectors) -> f64 {
+        let tie = self.of_tip.get_mut(&id).and_then(|ties| ties.get_mut(index));
+        tie.map_or(0.0, |tie| tie.let_go(kept, u))
     }
 
     /// Lets the drag of the ties around growing tips act within a kick of `kick` [s], as far as each tip needs what

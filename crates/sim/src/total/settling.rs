@@ -1,0 +1,138 @@
+//! Letting go of what a recut leaves strained without force, at the cost of the tips that have cut there.
+//!
+//! When a crack turns, its ties become stiffer and particles change sides. Forces must not jump for that, so that what
+//! is strained has a part without force, the misfit of a particle or of a tie, which is let go of while a wave runs
+//! some cells. As a rule that raises the strain energy: it is what the ties gave up when they became stiffer, and
+//! what the tip was credited with. So the tip pays for it out of what it has taken of the body beyond the cost of its
+//! way, and what no tip can pay for stays as it is. Otherwise a body whose cracks wind would gain energy from nothing:
+//! a sixth of what its crack took in a zigzag of 40 to 110 degrees.
+
+use super::Total;
+use super::lattice::Lattice;
+use crate::crack::cracks::{Cracks, TipId};
+use fissure_plane::Point;
+
+/// Time in which misfits fall to 1/e, over the time a wave takes for a cell.
+const SETTLING: f64 = 8.0;
+
+/// How far from a tip what it pays for is, in cells: it was cut there, and a tip runs less than half as far as waves.
+const REACH: f64 = 12.0;
+
+/// The part of what a tip has that it gives for this in a step: it also has to drive faces apart that drag held back.
+const PART: f64 = 0.5;
+
+/// Tips whose distances from a misfit differ by less than this pay for it together [cells].
+const ALIKE: f64 = 1e-9;
+
+/// Somebody who can pay.
+struct Payer {
+    id: TipId,
+    place: Point,
+    /// What it can give in this step [J/m].
+    means: f64,
+    /// What is asked of it [J/m].
+    asked: f64,
+    /// What it gives [J/m].
+    given: f64,
+}
+
+/// What is strained without force.
+#[derive(Clone, Copy)]
+pub(super) enum Strained {
+    /// A row of the particles on the general path.
+    Own(usize),
+    /// A row of what of them lies across a crack.
+    Across(usize),
+    /// A tie of a tip.
+    Tie(TipId, usize),
+}
+
+/// A misfit that can be let go of.
+struct Misfit {
+    of: Strained,
+    /// Numbers of those who pay.
+    payers: Vec<usize>,
+    /// Energy that the body gains when it is let go of [J/m].
+    gain: f64,
+}
+
+impl Total {
+    /// Lets go of misfits within a step of `time_step` [s].
+    pub(super) fn settle(&mut self, cracks: &Cracks, time_step: f64) {
+        self.settled.clear();
+        let kept = (-time_step / (SETTLING * self.lattice.crossing_time())).exp();
+        let mut strained = self.strained(kept);
+        if strained.is_empty() {
+            return;
+        }
+        let is_free = !self.lattice.has_ties();
+        let mut payers = if is_free { Vec::new() } else { payers(cracks) };
+        for misfit in &mut strained {
+            let place = match misfit.of {
+                Strained::Own(row) => self.lattice.particles.rest[self.lattice.layout.cut.particle_of(row)],
+                Strained::Across(row) => self.lattice.particles.rest[self.lattice.layout.far.particle_of(row)],
+                Strained::Tie(id, _) => cracks.position(id),
+            };
+            misfit.payers = nearest(&payers, place, self.lattice.grid.cell_size);
+            let share = misfit.gain / misfit.payers.len() as f64;
+            misfit.payers.iter().for_each(|&k| payers[k].asked += share);
+        }
+        for misfit in &strained {
+            let part_of = |k: &usize| (payers[*k].means / payers[*k].asked.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+            let part = if misfit.gain <= 0.0 || is_free {
+                1.0
+            } else {
+                // Energy is convex: a part of a misfit costs no more than that part of what all of it does.
+                misfit.payers.iter().map(part_of).reduce(f64::min).unwrap_or(0.0)
+            };
+            if part > 0.0 {
+                let gain = self.let_go(misfit.of, 1.0 - (1.0 - kept) * part);
+                let share = gain / misfit.payers.len() as f64;
+                misfit.payers.iter().for_each(|&k| payers[k].given += share);
+            }
+        }
+        self.settled.extend(payers.iter().filter(|payer| payer.given != 0.0).map(|payer| (payer.id, payer.given)));
+    }
+
+    /// All that is strained without force and can be let go of but the part `kept`, with what the body gains by that.
+    fn strained(&mut self, kept: f64) -> Vec<Misfit> {
+        let u = &self.motion.displacement;
+        let Lattice { layout, particles, materials, .. } = &mut self.lattice;
+        let mut found = Vec::new();
+        let mut add = |of: Strained, gain: f64| found.push(Misfit { of, payers: Vec::new(), gain });
+        layout.cut.each_misfit(kept, particles, materials, u, &mut |row, gain| add(Strained::Own(row), gain));
+        layout.far.each_misfit(kept, particles, materials, u, &mut |row, gain| add(Strained::Across(row), gain));
+        self.ties.each_misfit(kept, u, &mut |id, k, gain| add(Strained::Tie(id, k), gain));
+        found
+    }
+
+    /// Lets go of a misfit but the part `kept`. Returns the energy that the body gains by it [J/m].
+    fn let_go(&mut self, of: Strained, kept: f64) -> f64 {
+        let u = &self.motion.displacement;
+        let Lattice { layout, particles, materials, .. } = &mut self.lattice;
+        match of {
+            Strained::Own(row) => layout.cut.let_go(row, kept, particles, materials, u),
+            Strained::Across(row) => layout.far.let_go(row, kept, particles, materials, u),
+            Strained::Tie(id, k) => self.ties.let_go(id, k, kept, u),
+        }
+    }
+}
+
+/// The tips that have something to give.
+fn payers(cracks: &Cracks) -> Vec<Payer> {
+    let payer = |id: TipId| {
+        let means = PART * cracks.tip(id)?.means();
+        (means > 0.0).then(|| Payer { id, place: cracks.position(id), means, asked: 0.0, given: 0.0 })
+    };
+    cracks.ids().filter_map(payer).collect()
+}
+
+/// The payers nearest to a place: more than one where they are equally near.
+fn nearest(payers: &[Payer], place: Point, cell_size: f64) -> Vec<usize> {
+    let distance = |payer: &Payer| (payer.place - place).norm() / cell_size;
+    let least = payers.iter().map(distance).fold(f64::INFINITY, f64::min);
+    if least > REACH {
+        return Vec::new();
+    }
+    (0..payers.len()).filter(|&k| distance(&payers[k]) <= least + ALIKE).collect()
+}
