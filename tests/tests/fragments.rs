@@ -95,7 +95,8 @@ fn objects_are_fragments_in_what_falls() {
     for name in ["drop-glass", "drop-pmma", "drop-jello", "drop-snow"] {
         follow(name, &[]);
     }
-    follow("logo", &["grid.particle_spacing=0.03"]);
+    // As it is: in cells twice as large a shard sinks into another by half a cell for 15 frames, and .0014 is gone.
+    follow("logo", &[]);
 }
 
 #[test]

@@ -40,7 +40,10 @@ impl Simulation {
         let carried = if tip.is_free { MOST_CARRIED } else { 1.0 };
         let kept = tip.balance.min(carried * tip.most_balance);
         if tip.state == TipState::Growing {
-            tip.balance = kept + dragged;
+            // What it owed when it came to rest it still does.
+            let owed = tip.left_over.min(0.0);
+            tip.left_over -= owed;
+            tip.balance = kept + dragged + owed;
         } else {
             tip.left_over += kept + dragged;
             tip.balance = 0.0;

@@ -15,7 +15,9 @@ impl Simulation {
     pub(super) fn watch_energy(&mut self) -> Result<(), SimulationError> {
         let now = self.solver.energies();
         let held = now.kinetic + now.strain + self.solver.energy_of_lag();
-        let given = self.state.first_energy + now.external_work + self.solver.work_in_doubt();
+        // What tips have lent beyond what they have taken, they will take.
+        let lent = (-self.state.crack_energy).max(0.0);
+        let given = self.state.first_energy + now.external_work + self.solver.work_in_doubt() + lent;
         // What has been exchanged in all, so that a body that only flies is judged by its own energy, and one that
         // bounces not by the little that gravity has left it with at its highest point.
         self.state.most_work = self.state.most_work.max(now.external_work.abs());

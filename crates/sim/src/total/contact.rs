@@ -29,6 +29,7 @@ use super::motion::Motion;
 use super::near::Near;
 use super::probes::Probes;
 use super::segment_normals::SegmentNormals;
+use super::ties::{Coupled, Ties};
 use crate::contact::friction::{borne_by_friction, left_of};
 use crate::contact::neighbours::TOGETHER;
 use crate::crack::Crack;
@@ -75,6 +76,8 @@ struct MeetingPoint {
     modulus: f64,
     /// Force on the face above in the last step, per unit thickness [N/m].
     force: Vector,
+    /// The part of it that the faces feel: see [`Masses::part_on_faces`].
+    on_faces: f64,
 }
 
 /// All points at which the faces of cracks may meet, in the order of their nodes.
@@ -91,6 +94,8 @@ pub(super) struct Contacts {
     sharing: Vec<u32>,
     /// Of each field, whether a point has pushed it in this step; none has between steps.
     pushed: Vec<bool>,
+    /// Of each field, the number from 1 on of the fields that it is tied with; zero between steps and elsewhere.
+    tied: Vec<u32>,
     normals: SegmentNormals,
 }
 
@@ -122,8 +127,18 @@ struct Meeting {
     is_pressed: bool,
 }
 
-/// Forces between faces: the number of a point and the force on the face above [N/m].
-pub(super) type FaceForces = Vec<(u32, [f64; 2])>;
+/// How fields answer impulses: with their own masses, and with the inertia of ties around tips.
+struct Masses<'a> {
+    /// Of each field [kg/m].
+    mass: &'a [f64],
+    /// The fields that are tied together.
+    groups: Vec<&'a Coupled>,
+    /// See [`Contacts`].
+    tied: Vec<u32>,
+}
+
+/// Forces between faces: the number of a point, the force on the face above [N/m], and the part that the faces feel.
+pub(super) type FaceForces = Vec<(u32, [f64; 2], f64)>;
 
 impl Contacts {
     /// The points of `lattice`. `friction`: coefficient of friction; none where faces pass through each other.
@@ -135,6 +150,7 @@ impl Contacts {
             cell_size: lattice.grid.cell_size,
             sharing: Vec::new(),
             pushed: Vec::new(),
+            tied: Vec::new(),
             normals: SegmentNormals::default(),
         }
     }
@@ -145,9 +161,10 @@ impl Contacts {
     /// [`SimulationError::BadState`](crate::SimulationError::BadState)
     pub(super) fn set_forces(&mut self, forces: &FaceForces) -> Fits {
         saved::below("a force between faces", forces.iter().map(|f| f.0), self.points.len())?;
-        saved::finite("a force between faces", forces.iter().flat_map(|f| &f.1))?;
-        for &(point, force) in forces {
-            self.points[point as usize].force = force.into();
+        saved::finite("a force between faces", forces.iter().flat_map(|f| f.1.iter().chain([&f.2])))?;
+        for &(point, force, on_faces) in forces {
+            let point = &mut self.points[point as usize];
+            (point.force, point.on_faces) = (force.into(), on_faces);
         }
         Ok(())
     }
@@ -155,7 +172,7 @@ impl Contacts {
     /// The forces of the last step.
     pub(super) fn all_forces(&self) -> FaceForces {
         let pressed = self.points.iter().enumerate().filter(|(_, point)| point.force != Vector::zeros());
-        pressed.map(|(index, point)| (index as u32, point.force.into())).collect()
+        pressed.map(|(index, point)| (index as u32, point.force.into(), point.on_faces)).collect()
     }
 
     /// Lays all points anew, with the forces that they have: a tip slides on between two changes, and with it the end
@@ -174,7 +191,7 @@ impl Contacts {
             for point in own {
                 let same = |now: &&mut MeetingPoint| now.crack == point.crack && now.force == Vector::zeros();
                 if let Some(now) = self.points[begin..begin + count].iter_mut().find(same) {
-                    now.force = point.force;
+                    (now.force, now.on_faces) = (point.force, point.on_faces);
                 }
             }
         }
@@ -203,6 +220,7 @@ impl Contacts {
                 for before in own {
                     if let Some(now) = points[first..].iter_mut().find(|point| point.crack == before.crack) {
                         now.force += before.force;
+                        now.on_faces = before.on_faces;
                     }
                 }
             } else {
@@ -230,7 +248,7 @@ impl Contacts {
     /// Applies contact at all points: impulses within the time `kick` [s], beginning with those of the step before.
     pub(super) fn resolve(
         &mut self,
-        mass: &[f64],
+        (mass, ties): (&[f64], &Ties),
         (probes, cracks): (&Probes, &Cracks),
         motion: &mut Motion,
         kick: f64,
@@ -238,19 +256,20 @@ impl Contacts {
     ) {
         let Some(friction) = self.friction else { return };
         let mut meetings = self.meetings(probes, cracks, motion, kick, time_step);
+        let masses = self.masses(mass, ties, &meetings);
         for meeting in &mut meetings {
             meeting.impulse[1] = borne_by_friction(meeting.impulse[1], friction, meeting.impulse[0]);
             if meeting.impulse[0] > 0.0 {
-                self.push(meeting.point, meeting.whole(), mass, motion);
+                self.push(meeting.point, meeting.whole(), &masses, motion);
             }
         }
-        self.relax(meetings, friction, mass, motion, kick);
+        self.relax(meetings, friction, masses, motion, kick);
     }
 
     /// Goes on with the impulses of [`Contacts::resolve`] after velocities have changed.
     pub(super) fn resolve_again(
         &mut self,
-        mass: &[f64],
+        (mass, ties): (&[f64], &Ties),
         (probes, cracks): (&Probes, &Cracks),
         motion: &mut Motion,
         kick: f64,
@@ -258,17 +277,19 @@ impl Contacts {
     ) {
         let Some(friction) = self.friction else { return };
         let meetings = self.meetings(probes, cracks, motion, kick, time_step);
-        self.relax(meetings, friction, mass, motion, kick);
+        let masses = self.masses(mass, ties, &meetings);
+        self.relax(meetings, friction, masses, motion, kick);
     }
 
     /// Goes through all meetings until none approaches more than it may, or often enough; keeps their forces.
-    fn relax(&mut self, mut meetings: Vec<Meeting>, friction: f64, mass: &[f64], motion: &mut Motion, kick: f64) {
+    fn relax(&mut self, mut meetings: Vec<Meeting>, friction: f64, masses: Masses<'_>, motion: &mut Motion, kick: f64) {
         if meetings.is_empty() {
             self.points.iter_mut().for_each(|point| point.force = Vector::zeros());
             return;
         }
         // All others stay as they are until one that shares a field with them is pushed.
-        let mut candidates = self.candidates(&meetings, mass.len());
+        let fields = masses.mass.len();
+        let mut candidates = self.candidates(&meetings, fields);
         for _ in 0..ROUNDS {
             let acts = |&k: &usize| {
                 let meeting = &meetings[k];
@@ -279,9 +300,9 @@ impl Contacts {
             if acting.is_empty() {
                 break;
             }
-            self.share_fields(acting.iter().map(|&k| meetings[k].point), mass.len());
+            self.share_fields(acting.iter().map(|&k| meetings[k].point), fields);
             let changes: Vec<[f64; 2]> =
-                acting.iter().map(|&k| self.change(&meetings[k], friction, mass, motion)).collect();
+                acting.iter().map(|&k| self.change(&meetings[k], friction, &masses, motion)).collect();
             self.forget_shares(acting.iter().map(|&k| meetings[k].point));
             let (mut change, mut largest, mut spreads) = (0.0_f64, 0.0_f64, false);
             for (&k, changed) in acting.iter().zip(changes) {
@@ -289,7 +310,7 @@ impl Contacts {
                 let before = std::mem::replace(&mut meeting.impulse, changed);
                 let by = [changed[0] - before[0], changed[1] - before[1]];
                 let (point, impulse) = (meeting.point, Meeting { impulse: by, ..*meeting }.whole());
-                spreads |= self.push(point, impulse, mass, motion);
+                spreads |= self.push(point, impulse, &masses, motion);
                 change = change.max(by[0].abs()).max(by[1].abs());
                 largest = largest.max(changed[0]);
             }
@@ -297,7 +318,7 @@ impl Contacts {
                 break;
             }
             if spreads {
-                candidates = self.candidates(&meetings, mass.len());
+                candidates = self.candidates(&meetings, fields);
             }
         }
         self.pushed.fill(false);
@@ -305,7 +326,27 @@ impl Contacts {
         for meeting in &meetings {
             let point = &mut self.points[meeting.point];
             point.force = meeting.whole() * (point.total_weight() / kick);
+            point.on_faces = masses.part_on_faces(&point.fields);
         }
+        self.untie(masses);
+    }
+
+    /// How fields answer impulses, until [`Contacts::untie`].
+    fn masses<'a>(&mut self, mass: &'a [f64], ties: &'a Ties, meetings: &[Meeting]) -> Masses<'a> {
+        let mut tied = std::mem::take(&mut self.tied);
+        let groups: Vec<&Coupled> = if meetings.is_empty() { Vec::new() } else { ties.coupled().collect() };
+        tied.resize(mass.len(), 0);
+        for (number, group) in (1..).zip(&groups) {
+            group.fields().iter().for_each(|&field| tied[field as usize] = number);
+        }
+        Masses { mass, groups, tied }
+    }
+
+    /// Forgets what [`Contacts::masses`] has noted.
+    fn untie(&mut self, masses: Masses<'_>) {
+        let Masses { groups, mut tied, .. } = masses;
+        groups.iter().flat_map(|group| group.fields()).for_each(|&field| tied[field as usize] = 0);
+        self.tied = tied;
     }
 
     /// The meetings in which something may happen, of so many `fields`.
@@ -318,22 +359,28 @@ impl Contacts {
 
     /// Gives an impulse to the face above a point and takes it from the face below. Whether that moves a field that
     /// nothing has pushed before in this step.
-    fn push(&mut self, point: usize, impulse: Vector, mass: &[f64], motion: &mut Motion) -> bool {
-        self.pushed.resize(mass.len(), false);
-        self.points[point].push(impulse, mass, motion);
-        let fields = self.points[point].fields.iter().flat_map(|pair| [pair.above, pair.below]);
+    fn push(&mut self, point: usize, impulse: Vector, masses: &Masses<'_>, motion: &mut Motion) -> bool {
+        let Self { points, pushed, .. } = self;
+        pushed.resize(masses.mass.len(), false);
         let mut is_new = false;
-        for field in fields {
-            is_new |= !std::mem::replace(&mut self.pushed[field as usize], true);
+        for pair in &points[point].fields {
+            for (field, sign) in [(pair.above, 1.0), (pair.below, -1.0)] {
+                masses.each_moved(field, &mut |moved, response| {
+                    for axis in 0..2 {
+                        motion.velocity[axis][moved] += sign * (impulse[axis] * pair.weight * response);
+                    }
+                    is_new |= !std::mem::replace(&mut pushed[moved], true);
+                });
+            }
         }
         is_new
     }
 
     /// The impulse that a meeting would like, with the velocities as they are and its part of the masses.
-    fn change(&self, meeting: &Meeting, friction: f64, mass: &[f64], motion: &Motion) -> [f64; 2] {
+    fn change(&self, meeting: &Meeting, friction: f64, masses: &Masses<'_>, motion: &Motion) -> [f64; 2] {
         let point = &self.points[meeting.point];
         let speed = point.speed(motion);
-        let reduced = point.reduced_mass(|field| mass[field] / f64::from(self.sharing[field]));
+        let reduced = 1.0 / point.fields.iter().map(|pair| masses.mobility(pair, Some(&self.sharing))).sum::<f64>();
         let [normal, tangential] = meeting.impulse;
         let normal = (normal + (meeting.allowed - speed.dot(&meeting.normal)) * reduced).max(0.0);
         let sticking = tangential - speed.dot(&left_of(meeting.normal)) * reduced;
@@ -433,7 +480,7 @@ impl Contacts {
         let is_on =
             move |p: &&MeetingPoint| p.crack as usize == stretch.crack && stretch.has_segment(p.segment as usize);
         let pressed = self.points.iter().filter(is_on).filter(|p| p.force != Vector::zeros());
-        pressed.map(|p| (p.place, p.force))
+        pressed.map(|p| (p.place, p.force * p.on_faces))
     }
 }
 
@@ -480,23 +527,65 @@ impl MeetingPoint {
     fn total_weight(&self) -> f64 {
         self.fields.iter().map(|pair| pair.weight).sum()
     }
+}
 
-    /// What an impulse on one face, and against it on the other, has to move [kg/m]; `mass_of`: mass of a field.
-    fn reduced_mass(&self, mass_of: impl Fn(usize) -> f64) -> f64 {
-        let of_side = |field: u32| 1.0 / mass_of(field as usize);
-        let mobility = |pair: &FacingFields| pair.weight * pair.weight * (of_side(pair.above) + of_side(pair.below));
-        1.0 / self.fields.iter().map(mobility).sum::<f64>()
-    }
-
-    /// Gives an impulse to the face above and takes it from the face below.
-    fn push(&self, impulse: Vector, mass: &[f64], motion: &mut Motion) {
-        for pair in &self.fields {
-            let (above, below) = (pair.above as usize, pair.below as usize);
-            for axis in 0..2 {
-                motion.velocity[axis][above] += impulse[axis] * pair.weight / mass[above];
-                motion.velocity[axis][below] -= impulse[axis] * pair.weight / mass[below];
+impl Masses<'_> {
+    /// Tells of each field that an impulse of 1 on `field` moves by how much it does [m/kg].
+    fn each_moved(&self, field: u32, each: &mut dyn FnMut(usize, f64)) {
+        let field = field as usize;
+        match self.place(field) {
+            None => each(field, 1.0 / self.mass[field]),
+            Some((group, pushed)) => {
+                for (moved, &other) in group.fields().iter().enumerate() {
+                    each(other as usize, group.response(self.mass, pushed, moved));
+                }
             }
         }
+    }
+
+    /// The fields that a field is tied with, and its number among them.
+    fn place(&self, field: usize) -> Option<(&Coupled, usize)> {
+        let group = self.groups[(self.tied[field] as usize).checked_sub(1)?];
+        Some((group, group.fields().iter().position(|&other| other as usize == field)?))
+    }
+
+    /// By how much an impulse of 1 at a point parts the two fields there, with their weight [m/kg]; of what `sharing`
+    /// points act on, each has a part.
+    fn mobility(&self, pair: &FacingFields, sharing: Option<&[u32]>) -> f64 {
+        let [above, below] = [pair.above, pair.below].map(|field| self.place(field as usize));
+        let of_side = |field: u32, place: Option<(&Coupled, usize)>| match place {
+            None => {
+                1.0 / (self.mass[field as usize] / sharing.map_or(1.0, |sharing| f64::from(sharing[field as usize])))
+            }
+            Some((group, at)) => self.shared(group, sharing) * group.response(self.mass, at, at),
+        };
+        let together = match (above, below) {
+            (Some((group, a)), Some((of_below, b))) if std::ptr::eq(group, of_below) => {
+                2.0 * self.shared(group, sharing) * group.response(self.mass, b, a)
+            }
+            _ => 0.0,
+        };
+        pair.weight * pair.weight * (of_side(pair.above, above) + of_side(pair.below, below) - together)
+    }
+
+    /// The part of an impulse at a point with these `fields` that its faces feel: around a tip, where material holds
+    /// together still, the ties take the rest.
+    fn part_on_faces(&self, fields: &[FacingFields]) -> f64 {
+        let untied = |field: u32| self.tied[field as usize] == 0;
+        if fields.iter().all(|pair| untied(pair.above) && untied(pair.below)) {
+            return 1.0;
+        }
+        let alone = |field: u32| 1.0 / self.mass[field as usize];
+        let free = |pair: &FacingFields| pair.weight * pair.weight * (alone(pair.above) + alone(pair.below));
+        let all: f64 = fields.iter().map(free).sum();
+        fields.iter().map(|pair| self.mobility(pair, None)).sum::<f64>() / all
+    }
+
+    /// How many points act on fields that are tied together: each does on two.
+    fn shared(&self, group: &Coupled, sharing: Option<&[u32]>) -> f64 {
+        let Some(sharing) = sharing else { return 1.0 };
+        let twice: u32 = group.fields().iter().map(|&field| sharing[field as usize]).sum();
+        (0.5 * f64::from(twice)).max(1.0)
     }
 }
 
@@ -548,6 +637,7 @@ fn add_points_of_node(
             fields: fields.into(),
             modulus: modulus_around(lattice, foot),
             force: Vector::zeros(),
+            on_faces: 1.0,
         });
     }
 }
@@ -669,8 +759,8 @@ mod tests {
                 }
             }
             let before = total.motion.velocity.clone();
-            let Total { lattice, motion, probes, contacts, .. } = &mut total;
-            contacts.resolve(lattice.mass(), (probes, &cracks), motion, 1e-4, 1e-4);
+            let Total { lattice, ties, motion, probes, contacts, .. } = &mut total;
+            contacts.resolve((lattice.mass(), ties), (probes, &cracks), motion, 1e-4, 1e-4);
             assert!(total.motion.velocity == before, "{way}");
         }
     }

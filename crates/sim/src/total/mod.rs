@@ -293,14 +293,14 @@ impl Solver for Total {
         let kick = motion.kick(&lattice.inverse_mass, scene.gravity, self.damping, time_step);
         ties.apply_drag(lattice.mass(), motion, cracks, kick);
         if self.contacts.are_possible() {
-            let Self { lattice, motion, probes, contacts, .. } = self;
-            contacts.resolve(lattice.mass(), (probes, cracks), motion, kick, time_step);
+            let Self { lattice, ties, motion, probes, contacts, .. } = self;
+            contacts.resolve((lattice.mass(), ties), (probes, cracks), motion, kick, time_step);
         }
         let touches = self.touch(cracks, middle, kick, time_step);
         self.apply_boundaries(middle, time_step, kick);
         if self.contacts.are_possible() && !self.colliders.is_empty() {
-            let Self { lattice, motion, probes, contacts, .. } = self;
-            contacts.resolve_again(lattice.mass(), (probes, cracks), motion, kick, time_step);
+            let Self { lattice, ties, motion, probes, contacts, .. } = self;
+            contacts.resolve_again((lattice.mass(), ties), (probes, cracks), motion, kick, time_step);
         }
         if touches && !self.colliders.is_empty() {
             self.touching.resolve_again(&mut self.motion);

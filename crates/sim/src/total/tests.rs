@@ -674,3 +674,31 @@ fn discs_exchange_their_speed() {
         assert!((0.94..1.0).contains(&parting), "{turn} {parting}");
     }
 }
+
+proptest! {
+    /// Truth: energy. The faces of a crack that come towards each other beside its tip take kinetic energy from their
+    /// body, with that of the ties, and never give any, with and without friction.
+    #[test]
+    fn faces_that_meet_beside_a_tip_give_nothing(
+        heading in -3.2..3.2_f64, away in prop::array::uniform2(0.0..0.2_f64), friction in prop::sample::select(vec![0.0, 0.5, 20.0]),
+        speeds in prop::collection::vec(-1.0..1.0_f64, 64),
+    ) {
+        let mut scene = cracked_plate();
+        scene.cracks.clear();
+        let tip = Point::new(1.9, 1.9) + Vector::from(away);
+        let start = tip + Vector::new(heading.cos(), heading.sin());
+        test_scenes::add_crack(&mut scene, &[start.into(), tip.into()]);
+        scene.solver.crack_contact = true;
+        scene.solver.crack_friction = friction;
+        let (mut total, cracks) = solver(&scene);
+        let near = |field: usize, total: &Total| (total.lattice.position(field) - tip).norm() < 0.5;
+        for field in (0..total.lattice.field_count()).filter(|&field| near(field, &total)).collect::<Vec<_>>() {
+            (0..2).for_each(|axis| total.motion.velocity[axis][field] = speeds[(2 * field + axis) % speeds.len()]);
+        }
+        let before = total.kinetic_energy();
+        let Total { contacts, lattice, ties, probes, motion, .. } = &mut total;
+        contacts.resolve((lattice.mass(), ties), (probes, &cracks), motion, 1e-9, 1e-9);
+        let after = total.kinetic_energy();
+        prop_assert!(after <= before * (1.0 + 1e-12), "{before} {after}");
+    }
+}

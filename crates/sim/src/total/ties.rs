@@ -18,7 +18,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// The fields of one node that ties couple by their inertia.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct Coupled {
+pub(super) struct Coupled {
     /// Tip and place of each tie in the list of its tip.
     members: Vec<(TipId, usize)>,
     fields: Vec<u32>,
@@ -31,6 +31,19 @@ struct Coupled {
 pub(super) struct Ties {
     of_tip: BTreeMap<TipId, Vec<Tie>>,
     at_node: BTreeMap<u32, Coupled>,
+}
+
+impl Coupled {
+    /// The fields that move together.
+    pub(super) fn fields(&self) -> &[u32] {
+        &self.fields
+    }
+
+    /// By how much an impulse of 1 on one of the fields moves another [m/kg], by their numbers here; `mass`: of all
+    /// fields [kg/m].
+    pub(super) fn response(&self, mass: &[f64], pushed: usize, moved: usize) -> f64 {
+        self.mixing[moved * self.fields.len() + pushed] / mass[self.fields[moved] as usize]
+    }
 }
 
 impl Ties {
@@ -125,6 +138,11 @@ impl Ties {
             .into_iter()
             .flat_map(|group| group.fields.iter().enumerate().map(move |(k, &field)| (field, (group, k))));
         TiedInertia { inverse_mass, groups: places.collect() }
+    }
+
+    /// All fields that ties couple, those of a node together.
+    pub(super) fn coupled(&self) -> impl Iterator<Item = &Coupled> {
+        self.at_node.values().filter(|group| !group.fields.is_empty())
     }
 
     /// The fields that ties couple at these nodes.
