@@ -7,10 +7,11 @@ use fissure_plane::Vector;
 use fissure_scene::TipState;
 use serde::{Deserialize, Serialize};
 
-/// The most debt of a tip over the most that it needs from one step to the next. A crack that winds has to pay up to
-/// a sixth of its cost, at sharp turns at once. Misfits that wait turn the path: `fissure verify shear-notch`, first
-/// direction at 8 places, −69.1 ± 0.8° with 1.0, −67.6 ± 1.5° with this, −66.6 ± 2.5° with 0.2. What a tip owes when it
-/// stops for good its body keeps: six flaws of 2.4 cells in a soft inclusion gain 1.7 % with 1.0, 0.6 % with this.
+/// The most debt of a tip over the most that it needs from one step to the next: with this, what a quarter of a cell
+/// costs. A crack that winds has to pay up to a quarter of its cost, at sharp turns at once. Misfits that wait turn the
+/// path: `fissure verify shear-notch`, first direction at 8 places, −69.1 ± 0.8° with 1.0, −67.6 ± 1.5° with this,
+/// −66.6 ± 2.5° with 0.2. What a tip owes when it stops for good its body keeps: a plate with four flaws of 2.4 cells
+/// and a crack beside a soft inclusion gains 1.7 % with 1.0, 0.6 % with this.
 const CREDIT: f64 = 0.5;
 /// By which part of its cost a tip with the most debt has to take more. `fissure verify wing-cracks`, K_I/K_Ic of wings
 /// that run, at 12 cells: 1.002 with this, 0.987 if nothing is paid.
@@ -53,8 +54,8 @@ pub(crate) struct Tip {
     pub(crate) balance: f64,
     /// The most of it that the tip needs from one step to the next [J/m].
     pub(crate) most_balance: f64,
-    /// What it had left of its balance when it came to rest or to its end [J/m]. It pays for nothing but what its cuts
-    /// have left strained.
+    /// What it had left of its balance when it came to rest or to its end [J/m], below zero what it owed. It pays for
+    /// nothing but what its cuts have left strained.
     pub(crate) left_over: f64,
     /// Whether nothing but waves limits its speed.
     pub(crate) is_free: bool,

@@ -5,7 +5,7 @@
 //! some cells. As a rule that raises the strain energy: it is what the ties gave up when they became stiffer, and
 //! what the tip was credited with. So the tip pays for it out of what it has taken of the body beyond the cost of its
 //! way, and what no tip can pay for stays as it is. Otherwise a body whose cracks wind would gain energy from nothing:
-//! a sixth of what its crack took in a zigzag of 40 to 110 degrees.
+//! in 16 random zigzags .07 of what the crack took in the mean and .25 at worst, where it is .0008 and .003 now.
 
 use super::Total;
 use super::lattice::Lattice;
@@ -38,7 +38,7 @@ struct Payer {
 
 /// What is strained without force.
 #[derive(Clone, Copy)]
-pub(super) enum Strained {
+enum Strained {
     /// A row of the particles on the general path.
     Own(usize),
     /// A row of what of them lies across a crack.
