@@ -1,6 +1,7 @@
 //! Cracks while they live: where they run at rest, what their ends are, how far their tips have come.
 
 pub(crate) mod assessment;
+pub(crate) mod changes;
 pub(crate) mod contact;
 pub(crate) mod cracks;
 pub(crate) mod crossing;

@@ -84,6 +84,8 @@ struct MeetingPoint {
 #[derive(Debug)]
 pub(super) struct Contacts {
     points: Vec<MeetingPoint>,
+    /// Numbers of those that pressed on each other in the last step.
+    pressed: Vec<u32>,
     /// Coefficient of friction; none where faces pass through each other.
     friction: Option<f64>,
     /// Faces that have come farther apart than this have parted [m].
@@ -145,6 +147,7 @@ impl Contacts {
     pub(super) fn new(friction: Option<f64>, lattice: &Lattice, cracks: &Cracks) -> Self {
         Self {
             points: all_points(lattice, cracks),
+            pressed: Vec::new(),
             friction,
             farthest: TOGETHER * lattice.grid.cell_size,
             cell_size: lattice.grid.cell_size,
@@ -166,7 +169,15 @@ impl Contacts {
             let point = &mut self.points[point as usize];
             (point.force, point.on_faces) = (force.into(), on_faces);
         }
+        self.note_pressed();
         Ok(())
+    }
+
+    /// Notes which points have a force.
+    fn note_pressed(&mut self) {
+        self.pressed.clear();
+        let all = self.points.iter().enumerate().filter(|(_, point)| point.force != Vector::zeros());
+        self.pressed.extend(all.map(|(index, _)| index as u32));
     }
 
     /// The forces of the last step.
@@ -195,6 +206,7 @@ impl Contacts {
                 }
             }
         }
+        self.note_pressed();
     }
 
     /// Whether faces can press on each other.
@@ -232,6 +244,7 @@ impl Contacts {
             }
         }
         self.points = points;
+        self.note_pressed();
     }
 
     /// Of each point the gap along its normal [m], by how much the faces have slid [m], and the part of that by which
@@ -285,6 +298,7 @@ impl Contacts {
     fn relax(&mut self, mut meetings: Vec<Meeting>, friction: f64, masses: Masses<'_>, motion: &mut Motion, kick: f64) {
         if meetings.is_empty() {
             self.points.iter_mut().for_each(|point| point.force = Vector::zeros());
+            self.pressed.clear();
             return;
         }
         // All others stay as they are until one that shares a field with them is pushed.
@@ -328,6 +342,7 @@ impl Contacts {
             point.force = meeting.whole() * (point.total_weight() / kick);
             point.on_faces = masses.part_on_faces(&point.fields);
         }
+        self.note_pressed();
         self.untie(masses);
     }
 
@@ -479,8 +494,8 @@ impl Contacts {
     pub(super) fn forces(&self, stretch: Stretch) -> impl Iterator<Item = (Point, Vector)> {
         let is_on =
             move |p: &&MeetingPoint| p.crack as usize == stretch.crack && stretch.has_segment(p.segment as usize);
-        let pressed = self.points.iter().filter(is_on).filter(|p| p.force != Vector::zeros());
-        pressed.map(|p| (p.place, p.force * p.on_faces))
+        let pressed = self.pressed.iter().map(|&index| &self.points[index as usize]);
+        pressed.filter(is_on).map(|p| (p.place, p.force * p.on_faces))
     }
 }
 

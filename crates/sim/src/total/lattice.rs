@@ -5,6 +5,7 @@ use super::cut::CutParticles;
 use super::riders::Riders;
 use super::run::Run;
 use crate::SimulationError;
+use crate::crack::changes::Changes;
 use crate::crack::cracks::Cracks;
 use crate::crack::division::{Around, Division, Shares, TipCut};
 use crate::grid::Grid;
@@ -121,14 +122,22 @@ impl Lattice {
         })
     }
 
-    /// Divides pairs by `cracks` from now on. Returns the boxes, from low to high corner [m], outside which particles
-    /// are divided as they were.
-    pub(super) fn set_cracks(&mut self, cracks: &Cracks) -> Vec<(Point, Point)> {
+    /// Divides pairs by `cracks` from now on. Returns what has changed.
+    pub(super) fn set_cracks(&mut self, cracks: &Cracks) -> Changes {
         let reach = self.reach() * self.grid.cell_size;
-        let boxes = self.division.follow(cracks.len(), |index, before| cracks.changed_line(index, before, reach));
+        let changes = self.division.follow(cracks.len(), |index, before| cracks.changed_line(index, before, reach));
         self.body_of_crack.clear();
         self.body_of_crack.extend(cracks.iter().map(|crack| crack.body));
-        boxes
+        changes
+    }
+
+    /// Whether pairs of `place`, told a hair beside it at `nudged`, may be divided otherwise than before `changes`.
+    pub(super) fn may_have_changed(&self, changes: &Changes, place: Point, nudged: Point) -> bool {
+        let stencil = self.stencil(place);
+        let nodes = self.grid.stencil(&stencil);
+        let last = stencil.width - 1;
+        let (low, high) = (nodes.place(0, 0), nodes.place(last, last));
+        self.division.may_have_changed(changes, nudged, low.inf(&nudged), high.sup(&nudged))
     }
 
     /// The shares of a pair of `place`, which belongs to `body`, and a node at `node`. A crack goes on beyond its
@@ -247,6 +256,16 @@ impl Lattice {
     pub(super) fn invert_masses(&mut self) {
         self.inverse_mass.clear();
         self.inverse_mass.extend(self.layout.mass.iter().map(|&m| if m > 0.0 { 1.0 / m } else { 0.0 }));
+    }
+
+    /// As [`Lattice::invert_masses`], of fields the masses of which have changed, and of new ones.
+    pub(super) fn invert_masses_of(&mut self, fields: impl Iterator<Item = u32>) {
+        let inverse = |m: f64| if m > 0.0 { 1.0 / m } else { 0.0 };
+        let new = &self.layout.mass[self.inverse_mass.len()..];
+        self.inverse_mass.extend(new.iter().map(|&m| inverse(m)));
+        for field in fields {
+            self.inverse_mass[field as usize] = inverse(self.layout.mass[field as usize]);
+        }
     }
 
     /// Checks a layout that was read against this lattice, with so many `cracks`.

@@ -46,9 +46,10 @@ impl Observed for Look<'_> {
     fn tip_zone(&self, cracks: &Cracks, id: TipId, radius: f64) -> TipZone {
         let Self { lattice, motion, .. } = *self;
         let tip = cracks.position(id);
-        let around = LineAround::new(cracks, id, radius, |crack, point| cracks[crack].points[point]);
-        let side_of = |ahead: Vector, place: Point| around.side_of(ahead, place);
-        let (points, frame, [back, back_minus_one]) = self.points_around(cracks, id, radius, side_of);
+        let ahead = self.ahead(cracks, id);
+        let around = LineAround::new(cracks, id, ahead, radius, |crack, point| cracks[crack].points[point]);
+        let side_of = |place: Point| around.side_of(place);
+        let (points, frame, [back, back_minus_one]) = self.points_around(cracks, (id, ahead), radius, side_of);
         let (opening, opening_distance) = self.opening(cracks, id, frame * back);
         let into = frame * back;
         let trail = cracks.trail(id);
@@ -96,7 +97,7 @@ impl Observed for Look<'_> {
         if is_pressed || !self.lattice.has_ties() || self.loads.on_faces(id.crack).next().is_some() {
             return None;
         }
-        let points = self.points_around(cracks, id, radius, |_, _| Side::Above).0;
+        let points = self.points_around(cracks, (id, self.ahead(cracks, id)), radius, |_| Side::Above).0;
         Some(TipZone { points, follows_line: true, ..TipZone::default() })
     }
 
@@ -114,19 +115,24 @@ impl Observed for Look<'_> {
 }
 
 impl Look<'_> {
-    /// The points around a tip in its frame, the frame, and the turn of its surroundings taken back, less 1 too.
+    /// Unit vector ahead of a tip at rest.
+    fn ahead(&self, cracks: &Cracks, id: TipId) -> Vector {
+        cracks.ahead(id, DIRECTION_LENGTH * self.lattice.grid.cell_size)
+    }
+
+    /// The points around a tip in its frame (`ahead`: e1), the frame, and the turn of its surroundings taken back, less
+    /// 1 too.
     fn points_around(
         &self,
         cracks: &Cracks,
-        id: TipId,
+        (id, ahead): (TipId, Vector),
         radius: f64,
-        side_of: impl Fn(Vector, Point) -> Side,
+        side_of: impl Fn(Point) -> Side,
     ) -> (Vec<QuadraturePoint>, Matrix, [Matrix; 2]) {
         let Self { lattice, motion, .. } = *self;
         let particles = &lattice.particles;
         let line = cracks.of(id);
         let tip = cracks.position(id);
-        let ahead = cracks.ahead(id, DIRECTION_LENGTH * lattice.grid.cell_size);
         let s = particles.spacing;
         let center = (tip - particles.anchor) / s;
         let reach = (radius / s).ceil() as i32 + 1;
@@ -160,7 +166,7 @@ impl Look<'_> {
                 QuadraturePoint {
                     place: frame * arm,
                     displacement: frame * (back * (displacement + h * way) + back_minus_one * arm),
-                    side: side_of(ahead, place),
+                    side: side_of(place),
                     volume: particles.volume[p] * share,
                     stress: into(back * crate::first_piola_stress(&h, e.mu, e.lambda)),
                     gradient: into(back * h + back_minus_one),

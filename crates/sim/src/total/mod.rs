@@ -328,17 +328,18 @@ impl Solver for Total {
     fn recut(&mut self, cracks: &Cracks, changed: &[TipId]) -> f64 {
         self.step_at_rest = OnceLock::new();
         let shifts = self.probes.added_at_starts(cracks, changed);
-        let mut boxes = self.lattice.set_cracks(cracks);
+        let changes = self.lattice.set_cracks(cracks);
         let held = self.ties.held(&self.motion);
         let divides = changed.iter().any(|id| id.crack >= self.probes.faces.len());
-        let mut lost = self.lattice.recut(&boxes, divides, &mut self.motion);
+        let mut lost = self.lattice.recut(&changes, divides, &mut self.motion);
+        let mut boxes = changes.boxes.clone();
         if changed.iter().any(|&id| cracks.end(id) != CrackEnd::Tip) {
             let around = recut::boxes_behind(cracks, changed, self.lattice.grid.cell_size);
             lost += self.lattice.seat_more_riders(&around, &mut self.motion);
             boxes.extend(around);
         }
         let turned = std::mem::take(&mut self.lattice.turned);
-        let has_mouthed = self.probes.refresh(&self.lattice, cracks, changed, &boxes, &turned);
+        let has_mouthed = self.probes.refresh(&self.lattice, cracks, changed, (&changes, &boxes), &turned);
         let near = Near::new(&self.lattice, &boxes, shifts);
         self.loads.refresh(&near, &self.scene, &self.lattice, cracks);
         self.colliders.refresh(&near, &self.lattice);

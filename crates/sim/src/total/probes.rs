@@ -3,6 +3,7 @@
 use super::lattice::Lattice;
 use super::motion::Motion;
 use super::probe::Probe;
+use crate::crack::changes::Changes;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::crossing::Side;
 use crate::crack::{Crack, left_at};
@@ -53,8 +54,9 @@ impl Lattice {
             face.splice(0..0, (0..old.start).map(|k| self.face_probe(crack, k, side)));
             face.extend((old.end..points.len()).map(|k| self.face_probe(crack, k, side)));
             for &k in &suspects {
-                let nudged = self.nudged(crack, k, side);
                 let probe = &face[k];
+                // Between the ends no point moves, nor does what is beside it.
+                let nudged = if is_by_end(k) { self.nudged(crack, k, side) } else { probe.nudged };
                 if probe.rest != points[k] || probe.nudged != nudged || has_changed(probe) {
                     face[k] = self.probe(crack.body, points[k], nudged);
                 }
@@ -143,16 +145,18 @@ impl Probes {
     }
 
     /// Lays the probes anew that may have changed: of the faces of cracks with a `changed` end, and of all within
-    /// `boxes`. `turned`: nodes of which a field has got mass, or has lost all. Returns whether an outline has got a
-    /// mouth.
+    /// `boxes`, of which those beyond the ones of `changes` hold particles that ride on others now. `turned`: nodes of
+    /// which a field has got mass, or has lost all. Returns whether an outline has got a mouth.
     pub(super) fn refresh(
         &mut self,
         lattice: &Lattice,
         cracks: &Cracks,
         changed: &[TipId],
-        boxes: &[(Point, Point)],
+        (changes, boxes): (&Changes, &[(Point, Point)]),
         turned: &[usize],
     ) -> bool {
+        let beside = &boxes[changes.boxes.len()..];
+        let has_riders = |p: Point| beside.iter().any(|(low, high)| p >= *low && p <= *high);
         let within = |p: Point| boxes.iter().any(|(low, high)| p >= *low && p <= *high);
         let seen = Vector::repeat(SEEN * lattice.grid.cell_size);
         let sees = |p: Point| boxes.iter().any(|(low, high)| p >= low - seen && p <= high + seen);
@@ -161,7 +165,10 @@ impl Probes {
         let has_changed = |probe: &Probe| {
             if probe.is_local {
                 let is_beside = |node: &Point| (node - probe.rest).amax() < stencil;
-                within(probe.nudged) || within(probe.rest) || turned.iter().any(is_beside)
+                turned.iter().any(is_beside)
+                    || has_riders(probe.rest)
+                    || (within(probe.nudged) || within(probe.rest))
+                        && lattice.may_have_changed(changes, probe.rest, probe.nudged)
             } else {
                 sees(probe.rest)
             }

@@ -11,11 +11,11 @@ use super::cutting::Parts;
 use super::lattice::{Lattice, Layout};
 use super::motion::Motion;
 use crate::crack::Crack;
+use crate::crack::changes::Changes;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::grid::entries::Entry;
 use fissure_plane::{Matrix, Point, Vector, bounds};
 use fissure_scene::End;
-use std::collections::BTreeMap;
 
 /// Particles that a crack leaves without hold as it comes to its end are looked for within so many cells of that.
 const REACH: f64 = 6.0;
@@ -61,20 +61,30 @@ fn box_behind(crack: &Crack, end: End, cell_size: f64) -> (Point, Point) {
 }
 
 impl Lattice {
-    /// Lays stencils anew within `boxes`, where cracks divide otherwise than before. Returns the energy that is lost
-    /// [J/m]. `divides`: a tip has become two.
-    pub(super) fn recut(&mut self, boxes: &[(Point, Point)], divides: bool, motion: &mut Motion) -> f64 {
-        let lost = self.recut_particles(boxes, divides, motion);
-        self.invert_masses();
-        lost
+    /// Lays stencils anew where cracks divide otherwise than before `changes`. Returns the energy that is lost [J/m].
+    /// `divides`: a tip has become two.
+    pub(super) fn recut(&mut self, changes: &Changes, divides: bool, motion: &mut Motion) -> f64 {
+        self.recut_particles(changes, divides, motion)
     }
 
-    /// Cuts the particles in `boxes` anew. Returns the energy that is lost [J/m].
-    fn recut_particles(&mut self, boxes: &[(Point, Point)], divides: bool, motion: &mut Motion) -> f64 {
+    /// Cuts the particles anew that may be divided otherwise. Returns the energy that is lost [J/m].
+    fn recut_particles(&mut self, of: &Changes, divides: bool, motion: &mut Motion) -> f64 {
         let mut affected: Vec<usize> = Vec::new();
-        for &(low, high) in boxes {
-            // Those that no crack is near any more become whole again.
-            affected.extend(self.particles.in_box(low, high).filter(|&p| !self.is_whole(p)));
+        for &(low, high) in &of.boxes {
+            // Those that no crack is near any more become whole again. Where a tip divides, all move.
+            // The particles of a cell see the same nodes.
+            let mut last: Option<([i32; 2], bool)> = None;
+            let mut may_be_cut_anew = |p: usize| {
+                let place = self.particles.rest[self.layout.riders.host(p).unwrap_or(p)];
+                let cell = self.stencil(place).first;
+                let known = last.filter(|known| known.0 == cell).map(|known| known.1);
+                let found = known.unwrap_or_else(|| self.may_have_changed(of, place, place));
+                last = Some((cell, found));
+                found
+            };
+            affected.extend(self.particles.in_box(low, high).filter(|&p| {
+                if self.layout.cut.entries_of(p).is_none() { !self.is_whole(p) } else { divides || may_be_cut_anew(p) }
+            }));
         }
         affected.sort_unstable();
         affected.dedup();
@@ -246,7 +256,7 @@ impl Lattice {
         let smallest = NO_MASS * self.least_mass;
         let twice = |mass: f64, velocity: Vector| mass * velocity.norm_squared();
         let mut lost = 0.0;
-        for (field, t) in field_changes {
+        for &(field, t) in &field_changes {
             let d = field as usize;
             lost += twice(self.layout.mass[d], motion.velocity(d));
             let kept = self.layout.mass[d] - t.mass_out;
@@ -274,13 +284,17 @@ impl Lattice {
             self.layout.mass[d] = total;
             lost -= twice(total, motion.velocity(d));
         }
+        self.invert_masses_of(field_changes.iter().map(|of| of.0));
         0.5 * lost
     }
 }
 
-/// What leaves and enters each field, all `changes` together.
-fn field_changes(changes: &[WeightChange], motion: &Motion) -> BTreeMap<u32, FieldChange> {
-    let mut field_changes: BTreeMap<u32, FieldChange> = BTreeMap::new();
+/// What leaves and enters each field, all `changes` together, by rising fields.
+fn field_changes(changes: &[WeightChange], motion: &Motion) -> Vec<(u32, FieldChange)> {
+    let mut fields: Vec<u32> = changes.iter().flat_map(|change| change.moved.iter().map(|m| m.0)).collect();
+    fields.sort_unstable();
+    fields.dedup();
+    let mut of_fields = vec![None; fields.len()];
     for WeightChange { moved, mass } in changes {
         let given: f64 = moved.iter().filter(|m| m.1 < 0.0).map(|m| -m.1).sum();
         if given <= 0.0 {
@@ -294,7 +308,8 @@ fn field_changes(changes: &[WeightChange], motion: &Motion) -> BTreeMap<u32, Fie
             displacement += motion.displacement(field as usize) * (-change / given);
         }
         for &(field, change) in moved {
-            let of_field = field_changes.entry(field).or_default();
+            let Ok(at) = fields.binary_search(&field) else { continue };
+            let of_field = of_fields[at].get_or_insert(FieldChange::default());
             if change < 0.0 {
                 of_field.mass_out -= change * mass;
             } else {
@@ -304,5 +319,5 @@ fn field_changes(changes: &[WeightChange], motion: &Motion) -> BTreeMap<u32, Fie
             }
         }
     }
-    field_changes
+    fields.into_iter().zip(of_fields).filter_map(|(field, of_field)| Some((field, of_field?))).collect()
 }

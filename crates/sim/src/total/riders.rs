@@ -169,7 +169,6 @@ impl Lattice {
         }
         let lost = self.move_weights(&changes, false, motion);
         self.put_strained(parts, motion);
-        self.invert_masses();
         lost + before - self.held_by(&moved, motion)
     }
 

@@ -11,6 +11,7 @@ use super::Total;
 use super::lattice::Lattice;
 use crate::crack::cracks::{Cracks, TipId};
 use fissure_plane::Point;
+use smallvec::SmallVec;
 
 /// Time in which misfits fall to 1/e, over the time a wave takes for a cell.
 const SETTLING: f64 = 8.0;
@@ -51,7 +52,7 @@ enum Strained {
 struct Misfit {
     of: Strained,
     /// Numbers of those who pay.
-    payers: Vec<usize>,
+    payers: SmallVec<[usize; 4]>,
     /// Energy that the body gains when it is let go of [J/m].
     gain: f64,
 }
@@ -99,7 +100,7 @@ impl Total {
         let u = &self.motion.displacement;
         let Lattice { layout, particles, materials, .. } = &mut self.lattice;
         let mut found = Vec::new();
-        let mut add = |of: Strained, gain: f64| found.push(Misfit { of, payers: Vec::new(), gain });
+        let mut add = |of: Strained, gain: f64| found.push(Misfit { of, payers: SmallVec::new(), gain });
         layout.cut.each_misfit(kept, particles, materials, u, &mut |row, gain| add(Strained::Own(row), gain));
         layout.far.each_misfit(kept, particles, materials, u, &mut |row, gain| add(Strained::Across(row), gain));
         self.ties.each_misfit(kept, u, &mut |id, k, gain| add(Strained::Tie(id, k), gain));
@@ -128,11 +129,17 @@ fn payers(cracks: &Cracks) -> Vec<Payer> {
 }
 
 /// The payers nearest to a place: more than one where they are equally near.
-fn nearest(payers: &[Payer], place: Point, cell_size: f64) -> Vec<usize> {
-    let distance = |payer: &Payer| (payer.place - place).norm() / cell_size;
-    let least = payers.iter().map(distance).fold(f64::INFINITY, f64::min);
-    if least > REACH {
-        return Vec::new();
+fn nearest(payers: &[Payer], place: Point, cell_size: f64) -> SmallVec<[usize; 4]> {
+    let far = (REACH + 1.0) * cell_size;
+    let mut near: SmallVec<[(usize, f64); 16]> = SmallVec::new();
+    for (k, arm) in payers.iter().map(|payer| payer.place - place).enumerate() {
+        if arm.amax() < far {
+            near.push((k, arm.norm() / cell_size));
+        }
     }
-    (0..payers.len()).filter(|&k| distance(&payers[k]) <= least + ALIKE).collect()
+    let least = near.iter().map(|of| of.1).fold(f64::INFINITY, f64::min);
+    if least > REACH {
+        return SmallVec::new();
+    }
+    near.into_iter().filter(|of| of.1 <= least + ALIKE).map(|of| of.0).collect()
 }

@@ -4,6 +4,7 @@
 use super::field_vectors::FieldVectors;
 use super::probe::Probe;
 use super::{Total, internal_forces, stability};
+use crate::crack::changes::{Cause, ChangedSegment, Changes};
 use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::crossing::Side;
 use crate::crack::tip::Tip;
@@ -17,6 +18,7 @@ use fissure_scene::{
     Support, TipDivision, Vector,
 };
 use proptest::prelude::*;
+use smallvec::SmallVec;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
 
@@ -420,7 +422,12 @@ fn a_tip_on_its_way_is_cut_as_it_was() {
         cracks.slide(TIP, increment.norm());
         total.slide(&cracks, TIP);
         let (fields, mass) = (total.lattice.field_count(), total.lattice.mass().to_vec());
-        let around = [(from - Vector::repeat(1.0), from + Vector::repeat(0.1))];
+        let (low, high) = (from - Vector::repeat(1.0), from + Vector::repeat(0.1));
+        // Every cell there has something that is said to be new.
+        let row = |k: i32| Point::new(low.x, low.y + 0.5 * total.lattice.grid.cell_size * f64::from(k));
+        let rows = (0..).map(row).take_while(|a| a.y < high.y);
+        let new = |a: Point| ChangedSegment { a, b: Point::new(high.x, a.y), cause: Cause::Itself, line: 0, tips: 0 };
+        let around = Changes::new(vec![(low, high)], rows.map(new).collect(), vec![SmallVec::new()]);
         total.lattice.recut(&around, false, &mut total.motion);
         assert_eq!(total.lattice.field_count(), fields);
         assert_eq!(total.lattice.mass(), mass);

@@ -73,7 +73,7 @@ impl Updated {
         let (tip, ahead) = self.tip_now(cracks, id);
         let tip_at_rest = cracks.position(id);
         let frame = Matrix::new(ahead.x, ahead.y, -ahead.y, ahead.x);
-        let line = LineAround::new(cracks, id, radius, |crack, point| self.faces.cracks[crack].position[point]);
+        let line = LineAround::new(cracks, id, ahead, radius, |crack, point| self.faces.cracks[crack].position[point]);
         let axes = TipAxes { id, tip, tip_at_rest, ahead, frame, line };
         let mut found: Vec<(usize, Matrix)> = Vec::new();
         let mut mean = Matrix::zeros();
@@ -126,7 +126,7 @@ impl Updated {
             place: frame * (point.position - axes.tip),
             displacement: frame
                 * (point.position - axes.tip - turned.0 * (particles.rest[particle] - axes.tip_at_rest)),
-            side: axes.line.side_of(axes.ahead, point.position),
+            side: axes.line.side_of(point.position),
             volume: particles.volume[particle] * ratio,
             stress: into(crate::kirchhoff_stress(elastic, mu, lambda) / ratio),
             gradient: into(gradient),
