@@ -63,6 +63,7 @@ fn collider_mesh(
         crease_angle: options.crease_angle,
         texture_origin: low,
         texture_size: (high - low).amax(),
+        at_rest: false,
         relief: None,
         bevel: None,
     };

@@ -390,18 +390,20 @@ impl<'a> Solids<'a> {
     /// material has folded over so that one corner lies on another. Nothing in it where it is smaller than asked for.
     fn at_rest(&self, body: u32, piece: u32, fragments: &[Vec<Vec<SourceEdge>>]) -> Option<Option<Mesh>> {
         let least = self.options.shortest_edge * size(self.scene, body);
-        let tidied = self.at_rest_with(body, piece, fragments, least, false);
-        tidied.or_else(|| self.at_rest_with(body, piece, fragments, 0.0, true))
+        let size = self.options.cap_size;
+        let plain = RestDivision { size, least, keeps_edges: false, unfolds: false };
+        let unfolded = RestDivision { unfolds: true, ..plain };
+        let whole = RestDivision { least: 0.0, keeps_edges: true, ..plain };
+        [unfolded, plain, whole].into_iter().find_map(|division| self.at_rest_with(body, piece, fragments, division))
     }
 
-    /// The same, without edges that are shorter than `least` [m] at rest; whether edges of boundaries are kept whole.
+    /// The same, in triangles as `division` asks for.
     fn at_rest_with(
         &self,
         body: u32,
         piece: u32,
         fragments: &[Vec<Vec<SourceEdge>>],
-        least: f64,
-        keeps_edges: bool,
+        division: RestDivision,
     ) -> Option<Option<Mesh>> {
         let (grid, interior) = (self.grids[body as usize], &self.interiors[body as usize]);
         let region = &self.scene.bodies[body as usize].region;
@@ -411,13 +413,13 @@ impl<'a> Solids<'a> {
         let corners: FxHashSet<[u64; 2]> = region.rings().flatten().map(bits).collect();
         let is_corner = |carried: &Carried| corners.contains(&bits(&carried.rest));
         let is_drawn = |edge: &SourceEdge| edge.slot == Slot::Outside && edge.carried.iter().all(is_corner);
-        let division = RestDivision { size: self.options.cap_size, least, keeps_edges };
         let mut sources = Vec::new();
         let mut caps = Vec::with_capacity(fragments.len());
         for boundaries in fragments {
-            let boundaries = joined(boundaries, least, grids[1], is_drawn);
-            caps.push(rest_cap(&boundaries, sources.len(), division, grids, interior, piece)?);
-            sources.extend(boundaries.into_iter().flatten());
+            let boundaries = joined(boundaries, division.least, grids[1], is_drawn);
+            let of = rest_cap(&boundaries, sources.len(), division, grids, interior, piece)?;
+            caps.push((of.cap, of.carried));
+            sources.extend(of.sources);
         }
         caps.retain(|(cap, _)| area(&cap.shape, grid) >= self.options.smallest_fragment);
         let extrusion = self.extrusion(body, &sources);
@@ -434,6 +436,7 @@ impl<'a> Solids<'a> {
             crease_angle: self.options.crease_angle,
             texture_origin: self.scene.bodies[body as usize].region.bounds().0,
             texture_size: size(self.scene, body),
+            at_rest: self.options.cut == Cut::Rest,
             relief: self.relief,
             bevel: self.bevel(body),
         }

@@ -227,7 +227,7 @@ fn whole_point(edge: &BoundaryEdge, end: usize) -> Option<usize> {
 }
 
 /// What two faces have in common: the crack, or the ring.
-fn crack_of(line: Line) -> (bool, usize) {
+pub(crate) fn crack_of(line: Line) -> (bool, usize) {
     match line {
         Line::Ring(i) => (false, i),
         Line::Above(i) | Line::Below(i) => (true, i),

@@ -30,6 +30,8 @@ pub(crate) struct Extrusion<'a> {
     pub(crate) texture_origin: Point,
     /// Length of one texture unit [m].
     pub(crate) texture_size: f64,
+    /// Whether corners of walls are shared as the material at rest tells alone.
+    pub(crate) at_rest: bool,
     /// How rough the walls of cracks are; none: smooth.
     pub(crate) relief: Option<&'a Relief>,
     /// How the edges between walls of cracks and caps are bevelled; none: sharp.
@@ -167,9 +169,14 @@ impl Extrusion<'_> {
         };
         let is_curve = own_turn.is_some() || other_turn.is_some();
         let crease = if is_curve { self.crease_angle.min(CORNER) } else { self.crease_angle };
-        let is_folded = own.dot(&theirs) <= 0.0;
+        let is_folded = own.dot(&theirs) <= 0.0 && !self.at_rest;
         let smooth = !is_folded && source.slot == other_source.slot && sides[0].dot(&sides[1]) >= crease.cos();
-        if smooth { (own + theirs).normalize() } else { own }
+        if !smooth {
+            return own;
+        }
+        // Both edges say the same of a corner that has folded right back: what the edge before it says.
+        let first = if point == edge.a { theirs } else { own };
+        (own + theirs).try_normalize(1e-6).unwrap_or(first)
     }
 
     pub(crate) fn source(&self, edge: &Edge) -> &SourceEdge {

@@ -52,6 +52,7 @@ fn face_mesh(
         crease_angle: options.crease_angle,
         texture_origin: low,
         texture_size: (high - low).amax(),
+        at_rest: false,
         relief,
         bevel: None,
     };

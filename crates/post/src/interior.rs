@@ -108,6 +108,17 @@ impl<'a> Interior<'a> {
         }
         (total > 0.0).then(|| ((place / total).into(), velocity / total))
     }
+
+    /// Position [m] of the material of fragment `piece` that is at `rest` [m] at rest, as the nearest of all its
+    /// particles sees it; none where there are none.
+    pub(crate) fn carried(&self, rest: Point, piece: u32) -> Option<Point> {
+        let particles = &self.frame.particles;
+        let squared = |binned: &Binned| (binned.place - rest).norm_squared();
+        let of_piece = self.rest.particles.iter().filter(|binned| binned.piece == piece);
+        let nearest = of_piece.min_by(|p, q| squared(p).total_cmp(&squared(q)).then(p.particle.cmp(&q.particle)))?;
+        let p = nearest.particle as usize;
+        Some(particles.position[p] + particles.deformation_gradient[p] * (rest - particles.rest[p]))
+    }
 }
 
 impl Bins {

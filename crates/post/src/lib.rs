@@ -8,8 +8,8 @@
 //!    and each its own boundary: edges of moved rings and crack faces that know the rest position, velocity and arc
 //!    length of the material at their ends. `outline`: a body without its cracks.
 //!    `smooth`: paths of cracks without their zigzag. `rest_cut`: triangles at rest that the material carries, in place
-//!    of steps 3 to 7; `sight`: on which side of cracks, `drawn_along`: with
-//!    faces that are shown elsewhere.
+//!    of steps 3 to 7, `carrying`; `sight`: on which side of cracks, `drawn_along`: with faces that are shown
+//!    elsewhere, `untangled`: without folds.
 //!    `crumbs`: fragments of a few particles move as these do. `closed`: cracks within a fragment are closed where they
 //!    are hardly open.
 //! 3. `boolean`: a fragment is where its own edges wind around a place at least once. An open crack in it takes one
@@ -42,6 +42,7 @@ pub mod bench;
 mod bevel;
 mod body_names;
 mod boolean;
+mod carrying;
 mod closed;
 mod colliders;
 #[cfg(test)]
@@ -93,6 +94,7 @@ mod snap;
 mod source;
 mod thinned;
 mod triangulate;
+mod untangled;
 mod widening;
 #[cfg(feature = "files")]
 mod write;

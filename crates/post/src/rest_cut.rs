@@ -5,9 +5,9 @@
 //! corner, what lies between two edges of the boundary has a corner of its own.
 
 use crate::boolean::{Edge, Shape, SourceIndex};
-use crate::drawn_along::drawn_along;
+use crate::carrying::{CarriedCorners, Carrying};
 use crate::interior::Interior;
-use crate::snap::Grid;
+use crate::snap::{Grid, GridPoint};
 use crate::source::{Carried, SourceEdge};
 use crate::triangulate::{Cap, inwards};
 use fissure_scene::{Point, Vector};
@@ -23,6 +23,12 @@ const SMALLEST_ANGLE: f64 = 20.1;
 /// Room between a fragment and the frame around it, as a part of its size.
 const MARGIN: f64 = 0.5;
 
+/// Corners of that frame.
+const FRAME: usize = 4;
+
+/// Parts of edges are longer than so many grid steps.
+const SHORTEST_PART: f64 = 8.0;
+
 /// How the triangles of a fragment at rest are made.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RestDivision {
@@ -32,10 +38,21 @@ pub(crate) struct RestDivision {
     pub(crate) least: f64,
     /// Whether edges of the boundary get no new corners.
     pub(crate) keeps_edges: bool,
+    /// Whether corners of the boundary may be elsewhere where it has turned over.
+    pub(crate) unfolds: bool,
 }
 
-/// Triangles of the fragment with these boundaries, moved with the material, and what the corners within carry. The
-/// edges of the boundaries are `first` and those after it of their object.
+/// Triangles of a fragment at rest, moved with the material.
+pub(crate) struct RestCap {
+    pub(crate) cap: Cap,
+    /// What the corners within carry.
+    pub(crate) carried: Vec<Carried>,
+    /// Where the edges of `cap` come from, in their order.
+    pub(crate) sources: Vec<SourceEdge>,
+}
+
+/// Triangles of the fragment with these boundaries, moved with the material. Their sources are to be `first` and those
+/// after it of their object.
 ///
 /// `grids`: those of the body now and at rest.
 ///
@@ -47,7 +64,7 @@ pub(crate) fn rest_cap(
     grids: [Grid; 2],
     interior: &Interior<'_>,
     piece: u32,
-) -> Option<(Cap, Vec<Carried>)> {
+) -> Option<RestCap> {
     let [grid, rest_grid] = grids;
     let (corners, places) = corners(boundaries, rest_grid);
     let old = places.len();
@@ -55,7 +72,7 @@ pub(crate) fn rest_cap(
     let chains = Chains::new(&triangles, old);
     let (mut corners_now, mut shape) = (Vec::with_capacity(corners.len()), Shape::with_capacity(corners.len()));
     let mut outer = Vec::new();
-    let mut source = first as u32;
+    let mut source = 0;
     for (edges, corners) in boundaries.iter().zip(&corners) {
         let (mut ring, mut contour) = (Vec::with_capacity(edges.len()), Vec::with_capacity(edges.len()));
         for (i, edge) in edges.iter().enumerate() {
@@ -82,7 +99,6 @@ pub(crate) fn rest_cap(
         shape.push(contour);
     }
     let sides = Sides::new(&triangles, &corners_now)?;
-    let mut within: Vec<Option<(Point, Vector)>> = Vec::new();
     let mut places = outer.clone();
     let mut number = BTreeMap::new();
     let mut found = Vec::with_capacity(sides.faces.len());
@@ -95,9 +111,8 @@ pub(crate) fn rest_cap(
                     Some(&number) => number,
                     None => {
                         let rest = rest_place(&triangles, vertex.index(), rest_grid);
-                        within.push(interior.moved(rest, rest, piece));
                         places.push(rest);
-                        let new = sides.count + within.len() as u32 - 1;
+                        let new = places.len() as u32 - 1;
                         number.insert(vertex.index(), new);
                         new
                     }
@@ -106,59 +121,45 @@ pub(crate) fn rest_cap(
         }
         found.push(triangle);
     }
-    let shown: Vec<Point> = shape.iter().flatten().map(|edge| grid.place(edge.a)).collect();
-    // By how much the boundary is off what particles beside it see.
-    let way = |((shown, rest), from): ((&Point, &Point), Point)| {
-        interior.moved(*rest, from, piece).map(|(place, _)| shown - place)
-    };
-    let mut ways: Vec<Option<Vector>> =
-        shown.iter().zip(&outer).zip(beside(&places, outer.len(), &found)).map(way).collect();
-    ways.resize(places.len(), None);
-    let along = drawn_along(&ways, &places, &found);
-    // Corners that see no particle go as those around them do.
-    let steps = shown.iter().zip(&places).map(|(shown, rest)| Some(shown - rest));
-    let beyond = places.iter().zip(&along).skip(shown.len());
-    let seen = within.iter().zip(beyond).map(|(seen, (rest, way))| seen.map(|(place, _)| place - rest + way));
-    let steps = drawn_along(&steps.chain(seen).collect::<Vec<_>>(), &places, &found);
     let edges: Vec<&SourceEdge> = boundaries.iter().flatten().collect();
-    let of_edge = |edge: &Edge| Some(edges[edge.source.0 as usize - first].at(edge.a).velocity);
-    let seen = within.iter().map(|seen| seen.map(|(_, velocity)| velocity));
-    let velocities: Vec<Option<Vector>> = shape.iter().flatten().map(of_edge).chain(seen).collect();
-    let velocities = drawn_along(&velocities, &places, &found);
-    let carried = (shown.len()..places.len()).map(|k| Carried::within(places[k], velocities[k])).collect();
-    let within = (shown.len()..places.len()).map(|k| grid.snap(places[k] + steps[k])).collect();
-    Some((Cap { shape, within, triangles: found }, carried))
-}
-
-/// A place beside each of the first `count` of some `places` [m], in that of its triangles with the widest angle there.
-fn beside(places: &[Point], count: usize, triangles: &[[u32; 3]]) -> Vec<Point> {
-    /// Part of the way to the middle of the triangle.
-    const PART: f64 = 0.05;
-    let mut found = vec![(0.0, Point::origin()); count];
-    (0..count).for_each(|k| found[k].1 = places[k]);
-    for triangle in triangles {
-        let [a, b, c] = triangle.map(|corner| places[corner as usize]);
-        let middle = Point::from((a.coords + b.coords + c.coords) / 3.0);
-        for (corner, [at, p, q]) in
-            triangle.iter().map(|corner| *corner as usize).zip([[a, b, c], [b, c, a], [c, a, b]])
-        {
-            let angle = (p - at).angle(&(q - at));
-            if corner < count && angle > found[corner].0 {
-                found[corner] = (angle, at + PART * (middle - at));
+    let told: Vec<[Carried; 2]> =
+        shape.iter().flatten().map(|edge| [edge.a, edge.b].map(|p| edges[edge.source.0 as usize].at(p))).collect();
+    let shown: Vec<GridPoint> = shape.iter().flatten().map(|edge| edge.a).collect();
+    let speeds: Vec<Vector> = told.iter().map(|[start, _]| start.velocity).collect();
+    let carrying = Carrying { interior, grid, piece, places: &places, triangles: &found };
+    let CarriedCorners { now, velocities } = carrying.corners(&shown, &speeds, division.unfolds);
+    let count = outer.len();
+    // Each edge tells of itself where it is: new corners and those that follow particles are not where the whole is.
+    let (mut sources, mut begin) = (Vec::with_capacity(count), 0);
+    for contour in &mut shape {
+        let length = contour.len();
+        for (i, edge) in contour.iter_mut().enumerate() {
+            let ends = [begin + i, begin + (i + 1) % length];
+            let slot = edges[edge.source.0 as usize].slot;
+            let mut carried = told[ends[0]];
+            for (carried, end) in carried.iter_mut().zip(ends) {
+                (carried.rest, carried.velocity) = (outer[end], velocities[end]);
             }
+            *edge = Edge { a: now[ends[0]], b: now[ends[1]], source: SourceIndex((first + ends[0]) as u32) };
+            sources.push(SourceEdge { a: edge.a, b: edge.b, carried, slot });
         }
+        begin += length;
     }
-    found.into_iter().map(|(_, place)| place).collect()
+    let carried = (count..places.len()).map(|k| Carried::within(places[k], velocities[k])).collect();
+    let cap = Cap { shape, within: now[count..].to_vec(), triangles: found };
+    Some(RestCap { cap, carried, sources })
 }
 
-/// The number of the place of each corner, and the places at rest, in grid steps.
+/// The number of the place of each corner, and the places at rest, in grid steps; those that the grid does not tell
+/// apart are one.
 fn corners(boundaries: &[Vec<SourceEdge>], grid: Grid) -> (Vec<Vec<usize>>, Vec<Point2<f64>>) {
     let mut places = Vec::new();
     let mut number = BTreeMap::new();
     let mut corner = |edge: &SourceEdge| {
         let place = grid.snap(edge.carried[0].rest);
         *number.entry((place.x, place.y)).or_insert_with(|| {
-            places.push(Point2::new(place.x as f64, place.y as f64));
+            // Not on the grid: lines that hardly part would cross.
+            places.push(Point2::new(edge.carried[0].rest.x / grid.step, edge.carried[0].rest.y / grid.step));
             places.len() - 1
         })
     };
@@ -172,7 +173,23 @@ fn rest_place(triangles: &Delaunay, vertex: usize, grid: Grid) -> Point {
 }
 
 /// The places with the boundary among the edges; none if edges cross or have no length. `step`: of the grid [m].
+///
+/// Between lines that are hardly apart edges would be divided again and again: then they stay whole.
 fn triangles(corners: &[Vec<usize>], places: Vec<Point2<f64>>, division: RestDivision, step: f64) -> Option<Delaunay> {
+    let refined = refined(corners, places.clone(), division, step)?;
+    let count = places.len() + FRAME;
+    let is_short = |edge: spade::handles::UndirectedEdgeHandle<'_, _, _, _, _>| {
+        let is_new = edge.vertices().iter().any(|vertex| vertex.index() >= count);
+        is_new && edge.is_constraint_edge() && edge.length_2() < SHORTEST_PART * SHORTEST_PART
+    };
+    if division.keeps_edges || !refined.undirected_edges().any(is_short) {
+        return Some(refined);
+    }
+    self::refined(corners, places, RestDivision { keeps_edges: true, ..division }, step)
+}
+
+/// The same, with parts of edges however short.
+fn refined(corners: &[Vec<usize>], places: Vec<Point2<f64>>, division: RestDivision, step: f64) -> Option<Delaunay> {
     let pairs = corners.iter().flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)));
     let edges: BTreeSet<[usize; 2]> = pairs.map(|(&a, &b)| [a.min(b), a.max(b)]).collect();
     if edges.iter().any(|[a, b]| a == b) {
@@ -180,7 +197,7 @@ fn triangles(corners: &[Vec<usize>], places: Vec<Point2<f64>>, division: RestDiv
     }
     // What lies outside is divided too: `spade` does not know it from what lies beyond a crack. With a frame around it
     // has no needles between the boundary and its convex hull.
-    let count = places.len() + 4;
+    let count = places.len() + FRAME;
     let (low, high) = bounds(&places);
     let margin = MARGIN * (high.x - low.x).max(high.y - low.y);
     let [left, right] = [low.x - margin, high.x + margin];
@@ -258,8 +275,6 @@ impl Chains {
 struct Sides {
     /// The triangles within, each with the numbers of its corners that lie on the boundary.
     faces: Vec<(spade::handles::FixedFaceHandle<spade::handles::InnerTag>, [Option<u32>; 3])>,
-    /// Number of corners on the boundary.
-    count: u32,
 }
 
 impl Sides {
@@ -301,6 +316,6 @@ impl Sides {
                 }
             }
         }
-        Some(Self { faces: sides.into_values().collect(), count })
+        Some(Self { faces: sides.into_values().collect() })
     }
 }

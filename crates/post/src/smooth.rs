@@ -1,7 +1,9 @@
 //! Paths of cracks, smoothed for the eye: tips that turn a little at every step leave a zigzag as wide as a cell.
 
-use fissure_plane::{bounds, distance_to_segment};
-use fissure_scene::{BranchKind, CrackFrame, Fragments, Frame, Guide, Line, Point, Scene, Vector};
+use crate::edges::crack_of;
+use fissure_plane::{bounds, distance_to_segment, orientation};
+use fissure_scene::{BoundaryEdge, BranchKind, CrackFrame, Fragments, Frame, Guide, Line, Point, Scene, Vector};
+use rustc_hash::FxHashMap;
 use std::borrow::Cow;
 
 /// Standard deviation of the weights with which places along a crack are averaged, in cells. A wave of 3.3 cells keeps
@@ -16,6 +18,9 @@ const ON_LINE: f64 = 0.02;
 const TANGENT: f64 = 0.5;
 /// Turns of the two faces against each other between which each begins to be smoothed along its own direction [rad].
 const APART: [f64; 2] = [0.05, 0.3];
+
+/// Times that points are held where smooth paths would cross, at most.
+const ROUNDS: usize = 8;
 
 /// The cracks of a frame with their faces on smoothed paths.
 pub(crate) struct SmoothCracks<'a> {
@@ -38,29 +43,102 @@ impl<'a> SmoothCracks<'a> {
         }
         let lines = drawn_lines(scene);
         let mut is_crossed: Vec<Vec<bool>> = frame.cracks.iter().map(|c| vec![false; c.rest.len()]).collect();
-        for edge in fragments.list().iter().flat_map(|f| f.boundaries.iter().flatten()) {
-            if let (Line::Above(crack) | Line::Below(crack), true) = (edge.line, edge.span != [0.0, 1.0]) {
-                edge.points.iter().for_each(|&point| is_crossed[crack][point] = true);
+        let mut hold = |edge: &BoundaryEdge, point: usize| {
+            if let Line::Above(crack) | Line::Below(crack) = edge.line {
+                is_crossed[crack][point] = true;
+            }
+        };
+        for boundary in fragments.list().iter().flat_map(|fragment| &fragment.boundaries) {
+            for (edge, next) in boundary.iter().zip(boundary.iter().cycle().skip(1)) {
+                if edge.span != [0.0, 1.0] {
+                    edge.points.iter().for_each(|&point| hold(edge, point));
+                }
+                // What ends on a point of another line.
+                if crack_of(edge.line) != crack_of(next.line) {
+                    hold(edge, edge.points[1]);
+                    hold(next, next.points[0]);
+                }
             }
         }
-        for (i, crack) in frame.cracks.iter().enumerate() {
+        let fixed = |(crack, is_crossed): (&CrackFrame, Vec<bool>)| {
             let rest = &crack.rest;
             let last = rest.len().saturating_sub(1);
             let near = near(&lines, rest, ON_LINE * scene.cell_size);
             let is_drawn = |p: Point| is_on(&near, p, ON_LINE * scene.cell_size);
             let is_joint = |k: usize| (k > 0 && rest[k - 1] == rest[k]) || (k < last && rest[k + 1] == rest[k]);
-            let is_fixed: Vec<bool> = (0..rest.len())
-                .map(|k| k == 0 || k == last || is_crossed[i][k] || is_joint(k) || is_drawn(rest[k]))
-                .collect();
-            if is_fixed.iter().all(|fixed| *fixed) {
-                continue;
+            (0..rest.len())
+                .map(|k| k == 0 || k == last || is_crossed[k] || is_joint(k) || is_drawn(rest[k]))
+                .collect::<Vec<bool>>()
+        };
+        let mut is_fixed: Vec<Vec<bool>> = frame.cracks.iter().zip(is_crossed).map(fixed).collect();
+        let mut changed: Vec<usize> = (0..frame.cracks.len()).collect();
+        for _ in 0..ROUNDS {
+            for i in changed {
+                let moves = is_fixed[i].iter().any(|fixed| !fixed);
+                let rest = &frame.cracks[i].rest;
+                smooth.offsets[i] = if moves {
+                    offsets(rest, &is_fixed[i], scene.cell_size, tolerance * scene.cell_size)
+                } else {
+                    vec![Vector::zeros(); rest.len()]
+                };
             }
-            let offsets = offsets(rest, &is_fixed, scene.cell_size, tolerance * scene.cell_size);
-            move_faces(&mut smooth.cracks.to_mut()[i], crack, &offsets, TANGENT * scene.cell_size);
-            smooth.offsets[i] = offsets;
+            changed = hold_crossings(&frame.cracks, &smooth.offsets, scene.cell_size, &mut is_fixed);
+            if changed.is_empty() {
+                break;
+            }
+        }
+        for (i, crack) in frame.cracks.iter().enumerate() {
+            if smooth.offsets[i].iter().any(|offset| *offset != Vector::zeros()) {
+                move_faces(&mut smooth.cracks.to_mut()[i], crack, &smooth.offsets[i], TANGENT * scene.cell_size);
+            }
         }
         smooth
     }
+}
+
+/// Holds the points of cracks whose smooth paths cross where their own do not. Returns the cracks that are held more
+/// than before.
+fn hold_crossings(
+    cracks: &[CrackFrame],
+    offsets: &[Vec<Vector>],
+    cell_size: f64,
+    is_fixed: &mut [Vec<bool>],
+) -> Vec<usize> {
+    let ends = |(crack, k): (usize, usize)| [k, k + 1].map(|k| cracks[crack].rest[k] + offsets[crack][k]);
+    let segments = || (0..cracks.len()).flat_map(|i| (1..cracks[i].rest.len()).map(move |k| (i, k - 1)));
+    let bins = |segment: (usize, usize)| {
+        let (low, high) = bounds(&ends(segment));
+        let [low, high] = [low, high].map(|p| [p.x, p.y].map(|x| (x / cell_size).floor() as i32));
+        (low[0]..=high[0]).flat_map(move |column| (low[1]..=high[1]).map(move |row| [column, row]))
+    };
+    let mut binned = FxHashMap::<[i32; 2], Vec<(usize, usize)>>::default();
+    segments().for_each(|segment| bins(segment).for_each(|bin| binned.entry(bin).or_default().push(segment)));
+    let mut held = Vec::new();
+    for one in segments().filter(|&(i, k)| offsets[i][k] != Vector::zeros() || offsets[i][k + 1] != Vector::zeros()) {
+        let [a, b] = ends(one);
+        let others = bins(one).flat_map(|bin| binned.get(&bin).into_iter().flatten().copied());
+        for other in others.filter(|other| cracks[other.0].body == cracks[one.0].body) {
+            let beside = other.0 == one.0 && other.1.abs_diff(one.1) <= 1;
+            let [c, d] = ends(other);
+            let crosses = || {
+                orientation(a, b, c) * orientation(a, b, d) < 0.0 && orientation(c, d, a) * orientation(c, d, b) < 0.0
+            };
+            if !beside && crosses() {
+                held.extend([one, other]);
+            }
+        }
+    }
+    let mut changed = Vec::new();
+    for (i, k) in held {
+        for k in [k, k + 1] {
+            if !std::mem::replace(&mut is_fixed[i][k], true) {
+                changed.push(i);
+            }
+        }
+    }
+    changed.sort_unstable();
+    changed.dedup();
+    changed
 }
 
 /// The points of all drawn cracks and guides [m].

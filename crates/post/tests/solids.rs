@@ -844,3 +844,58 @@ fn thousands_of_random_cracks_leave_solids() {
         .collect();
     assert!(failures.is_empty(), "{} of {cases} failed, the first: {}", failures.len(), failures[0]);
 }
+
+/// Truth: by hand. A square whose corner was torn over to the inside, with the points beside it, while its particles
+/// stay: the cut at rest follows these there, without folds, and all other points stay where they are told to be; one
+/// whose outline within has come past its own layers of triangles makes room.
+#[test]
+fn the_cut_at_rest_unfolds_what_has_turned_over() {
+    let region = square(20.0);
+    let scene = scene(region.clone());
+    let options = PostOptions { cut: Cut::Rest, ..options(&scene) };
+    type Moves = fn(Point) -> Point;
+    let moves: [(&str, Moves); 3] = [
+        ("corner", |p| if p.x + p.y < 0.9 { Point::new(1.5 - p.x, 1.5 - p.y) } else { p }),
+        ("ear", |p| if p == Point::new(0.0, 0.0) { Point::new(0.4, 0.4) } else { p }),
+        ("pressed", |p| if p.y < 1.3 { Point::new(p.x, 1.2 + p.y / 13.0) } else { p }),
+    ];
+    for (name, moved) in moves {
+        let mut frame = frame(&region, 40, &[]);
+        for outline in &mut frame.outlines {
+            outline.position = outline.rest.iter().copied().map(moved).collect();
+        }
+        let meshes = post_frame(&scene, &frame, &options).unwrap().parts.remove(0).1;
+        let triangles = front(&meshes);
+        let folded = triangles.iter().filter(|[a, b, c]| (b - a).perp(&(c - a)) <= 0.0).count();
+        assert_eq!(folded, 0, "{name}");
+        let is_shown = |p: Point| triangles.iter().flatten().any(|q| (p - q).norm() < 1e-5);
+        let stays = |p: &&Point| name == "pressed" || p.x + p.y > 3.0;
+        assert!(frame.outlines[0].position.iter().filter(stays).all(|p| is_shown(*p)), "{name}");
+    }
+}
+
+/// Truth: by hand. A zigzag on which a straight crack ends in one of its points: the end stays on the path when this is
+/// made smooth, so that what is cut at rest can be cut there: the same triangles however the parts move.
+#[test]
+fn smooth_paths_keep_what_ends_on_them() {
+    let region = square(20.0);
+    let scene = scene(region.clone());
+    let zigzag: Vec<Point> =
+        (0..=40).map(|k| Point::new(0.5 * f64::from(k), 10.0 + if k % 2 == 0 { 0.0 } else { 0.3 })).collect();
+    let on = zigzag[15];
+    let branch: Vec<Point> = (0..8).map(|k| on + f64::from(k) * Vector::new(0.1, -1.0)).collect();
+    let zeros = |rest: &Vec<Point>| vec![0.0; rest.len()];
+    let cracks = [
+        Opened::symmetric(zigzag.clone(), &zeros(&zigzag), CrackEnd::Mouth, CrackEnd::Mouth),
+        Opened::symmetric(branch.clone(), &zeros(&branch), CrackEnd::Junction { crack: 0 }, CrackEnd::Tip),
+    ];
+    let mut frame = frame(&region, 3, &cracks);
+    frame.particles = particles(&region, |p| (u32::from(p.y < 10.15), Vector::zeros()));
+    let options = PostOptions { smoothing: 0.5, cut: Cut::Rest, ..options(&scene) };
+    let meshes = post_frame(&scene, &frame, &options).unwrap().parts.remove(0).1;
+    let ends = |mesh: &Mesh| mesh.vertices.iter().any(|v| (v.position[0] - on.x).hypot(v.position[1] - on.y) < 1e-4);
+    assert!(meshes.len() == 2 && meshes.iter().all(ends), "{}", meshes.len());
+    assert!((area(&meshes) - 400.0).abs() < 1e-3);
+    let folded = front(&meshes).into_iter().filter(|[a, b, c]| (b - a).perp(&(c - a)) <= 0.0).count();
+    assert_eq!(folded, 0);
+}
