@@ -555,6 +555,24 @@ impl Division {
         self.bucket(point).iter().any(|s| touches(low, high, s.a, s.b))
     }
 
+    /// Whether a crack may part a particle at `point` from a node, both of them in the box from `low` to `high`, or run
+    /// through the material there. What is only drawn ahead of a tip, and farther ahead than the tip parts anything,
+    /// does not.
+    pub(crate) fn may_part(&self, point: Point, low: Point, high: Point) -> bool {
+        let ahead = self.ahead();
+        let mut drawn_ahead = None;
+        for s in self.bucket(point).iter().filter(|s| touches(low, high, s.a, s.b)) {
+            if self.kind(s) != SegmentKind::AheadOfTip || drawn_ahead.is_some_and(|line| line != s.line) {
+                return true;
+            }
+            drawn_ahead = Some(s.line);
+        }
+        drawn_ahead.is_some_and(|line| {
+            let tips = &self.lines[line as usize].tips;
+            !tips.iter().all(|tip| ahead.is_idle(tip, low, high))
+        })
+    }
+
     /// Calls `visit` with (crack, segment of it) for every segment that the line from `particle` to `node` crosses; a
     /// continuation counts as the segment it carries on.
     pub(crate) fn for_each_crossed(&self, particle: Point, node: Point, mut visit: impl FnMut(u32, usize)) {
@@ -998,21 +1016,25 @@ mod tests {
                 }
                 let before = division.clone();
                 let changes = division.set_lines(lines.clone());
-                let mut told = 0;
+                let (mut told, mut parting) = (0, 0);
                 for (i, j) in (0..400).map(|k| (k % 20 - 4, k / 20 - 4)) {
                     let low = Point::new(f64::from(i), f64::from(j));
                     let high = low + Vector::repeat(1.0);
+                    let parts = division.may_part(low + Vector::repeat(0.5), low, high);
+                    parting += i32::from(parts);
                     if division.may_have_changed(&changes, low + Vector::repeat(0.5), low, high) {
                         told += 1;
                         continue;
                     }
                     for particle in [[0.25, 0.25], [0.75, 0.25], [0.25, 0.75], [0.75, 0.75]].map(|[x, y]| low + Vector::new(x, y)) {
                         for node in [low, high, Point::new(low.x, high.y), Point::new(high.x, low.y)] {
-                            prop_assert_eq!(before.pair(particle, node), division.pair(particle, node));
+                            let shares = division.pair(particle, node);
+                            prop_assert!(parts || shares[0].crossed.is_empty(), "{shares:?}");
+                            prop_assert_eq!(before.pair(particle, node), shares);
                         }
                     }
                 }
-                prop_assert!(told <= 40, "{told}");
+                prop_assert!(told <= 40 && parting >= told / 2 && parting <= 80, "{told} {parting}");
             }
         }
 
@@ -1118,7 +1140,7 @@ mod tests {
         ) {
             let division = division(&lines, TipDivision::PartlyCut, cut);
             let (low, high) = (particle - Vector::repeat(1.0), particle + Vector::repeat(1.0));
-            if !division.may_divide(particle, low, high) {
+            if !division.may_divide(particle, low, high) || !division.may_part(particle, low, high) {
                 for (x, y) in nodes {
                     let shares = division.pair(particle, particle + Vector::new(x, y));
                     prop_assert!(shares.len() == 1 && shares[0].crossed.is_empty(), "{shares:?}");

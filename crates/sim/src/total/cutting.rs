@@ -115,13 +115,19 @@ impl Lattice {
 
     /// Whether a particle is served by the nodes' own fields alone, and by the weights of its place.
     ///
-    /// One that has a stencil of its own keeps it, be the crack that it was cut for no longer near: what lies ahead of
-    /// a tip leaves its neighbourhood again when the tip turns. A cell that went back to its row all the same would act
+    /// One that has a stencil of its own keeps it, be the crack that it was cut for no longer there: what lies ahead of
+    /// a tip is no longer when the tip turns. A cell that went back to its row all the same would act
     /// twice.
     pub(super) fn is_whole(&self, particle: usize) -> bool {
         self.layout.cut.entries_of(particle).is_none()
-            && !self.division.is_near(self.particles.rest[particle])
+            && !self.may_be_parted(self.particles.rest[particle])
             && self.particles.off_center(particle).is_none()
+    }
+
+    /// Whether a crack may part a particle at `place` from one of its nodes.
+    fn may_be_parted(&self, place: Point) -> bool {
+        let (low, high) = self.nodes_seen_from(place);
+        self.division.may_part(place, low, high)
     }
 
     /// The four particles of a cell, from its lower left one on, row by row; none where one is not there.

@@ -10,7 +10,7 @@ use crate::crack::cracks::Cracks;
 use crate::crack::division::{Around, Division, Shares, TipCut};
 use crate::grid::Grid;
 use crate::grid::fields::Fields;
-use crate::grid::kernel;
+use crate::grid::kernel::{self, Stencil};
 use crate::grid::owners::Owners;
 use crate::grid::walker::Walker;
 use crate::material::elastic::Elastic;
@@ -131,12 +131,16 @@ impl Lattice {
         changes
     }
 
+    /// The box from the lowest to the highest of the nodes that a particle at `place` sees.
+    pub(super) fn nodes_seen_from(&self, place: Point) -> (Point, Point) {
+        let Stencil { first, width, .. } = self.stencil(place);
+        let last = first.map(|k| k.saturating_add(width as i32 - 1));
+        (self.grid.place(first), self.grid.place(last))
+    }
+
     /// Whether pairs of `place`, told a hair beside it at `nudged`, may be divided otherwise than before `changes`.
     pub(super) fn may_have_changed(&self, changes: &Changes, place: Point, nudged: Point) -> bool {
-        let stencil = self.stencil(place);
-        let nodes = self.grid.stencil(&stencil);
-        let last = stencil.width - 1;
-        let (low, high) = (nodes.place(0, 0), nodes.place(last, last));
+        let (low, high) = self.nodes_seen_from(place);
         self.division.may_have_changed(changes, nudged, low.inf(&nudged), high.sup(&nudged))
     }
 

@@ -82,9 +82,8 @@ impl Lattice {
                 last = Some((cell, found));
                 found
             };
-            affected.extend(self.particles.in_box(low, high).filter(|&p| {
-                if self.layout.cut.entries_of(p).is_none() { !self.is_whole(p) } else { divides || may_be_cut_anew(p) }
-            }));
+            let around = self.particles.in_box(low, high);
+            affected.extend(around.filter(|&p| (divides || may_be_cut_anew(p)) && !self.is_whole(p)));
         }
         affected.sort_unstable();
         affected.dedup();

@@ -88,6 +88,14 @@ impl Ties {
     pub(super) fn share(&self, force: &mut FieldVectors) {
         let mut before = Vec::new();
         for group in self.at_node.values().filter(|group| !group.fields.is_empty()) {
+            // As nearly all are.
+            if let (&[a, b], &[aa, ab, ba, bb]) = (&group.fields[..], &group.mixing[..]) {
+                for force in force.iter_mut() {
+                    let (of_a, of_b) = (force[a as usize], force[b as usize]);
+                    (force[a as usize], force[b as usize]) = (aa * of_a + ab * of_b, ba * of_a + bb * of_b);
+                }
+                continue;
+            }
             for force in force.iter_mut() {
                 before.clear();
                 before.extend(group.fields.iter().map(|&f| force[f as usize]));
