@@ -31,10 +31,23 @@ pub(crate) struct BevelSize {
 
 /// Corners at which a contour turns by more than this have no bevel: its corner would lie twice as far in, cosine.
 const SHARP: f64 = -0.5;
+/// Walls that turn by more than this have folded right back, cosine.
+const FOLDED: f64 = -0.95;
 /// Triangles of caps keep this part of their area.
 const KEPT: f64 = 0.25;
 /// A width that leaves no room is narrowed to this part of it.
 const NARROWED: f64 = 0.7;
+/// So many grid steps would be lost in rounding.
+const LOST: f64 = 2.0;
+
+/// What a strip becomes that has no room.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Narrowest {
+    /// It goes.
+    Nothing,
+    /// It stays, hardly wide, and stands upright where that is too much.
+    Something,
+}
 
 /// A corner of a cap that may have moved inwards.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -103,36 +116,61 @@ impl Extrusion<'_> {
 
     /// The corners of a cap, contour after contour; as they are where edges are not bevelled.
     pub(crate) fn bevel(&self, cap: &Cap) -> Vec<BevelCorner> {
-        let edges: Vec<&Edge> = cap.shape.iter().flatten().collect();
-        let mut widths = vec![0.0; edges.len()];
-        let mut ways = vec![Vector::zeros(); edges.len()];
+        let (mut widths, mut ways) = self.widths(cap);
         if let Some(size) = self.bevel {
-            let mut first = 0;
-            for contour in &cap.shape {
-                for i in 0..contour.len() {
-                    let before = &contour[(i + contour.len() - 1) % contour.len()];
-                    if let Some(way) = self.inwards(before, &contour[i]) {
-                        (widths[first + i], ways[first + i]) = (size.width, way);
-                    }
-                }
-                first += contour.len();
-            }
-            narrow(cap, &ways, &mut widths, size.least);
+            narrow(cap, &mut ways, &mut widths, size.least, Narrowest::Nothing);
         }
-        let corner = |k: usize| {
-            let way = widths[k] * ways[k];
-            let drop = widths[k] * self.grid.step;
-            BevelCorner { point: moved(edges[k].a, way), at_rest: self.grid.step * self.at_rest(edges[k], way), drop }
-        };
-        (0..edges.len()).map(corner).collect()
+        self.corners(cap, &widths, &ways)
     }
 
-    /// Where the corner between two edges goes for a bevel one step wide; none where there is none.
-    fn inwards(&self, before: &Edge, after: &Edge) -> Option<Vector> {
+    /// How wide bevels are at the corners of a cap [m]; 0 where there are none.
+    pub(crate) fn bevel_widths(&self, cap: &Cap) -> Vec<f64> {
+        self.bevel(cap).iter().map(|corner| corner.drop).collect()
+    }
+
+    /// The corners of a cap with bevels of these `widths` [m], narrower where there is no room, but nowhere nothing:
+    /// there are strips where there are some at rest.
+    pub(crate) fn bevel_like(&self, cap: &Cap, widths: &[f64]) -> Vec<BevelCorner> {
+        let mut steps: Vec<f64> = widths.iter().map(|width| width / self.grid.step).collect();
+        let (_, mut ways) = self.widths(cap);
+        let least = self.bevel.map_or(0.0, |size| size.least);
+        narrow(cap, &mut ways, &mut steps, least, Narrowest::Something);
+        self.corners(cap, &steps, &ways)
+    }
+
+    /// How wide bevels are to be at the corners of a cap, in grid steps, and where they go for each.
+    fn widths(&self, cap: &Cap) -> (Vec<f64>, Vec<Vector>) {
+        let count = cap.shape.iter().map(Vec::len).sum();
+        let (mut widths, mut ways) = (vec![0.0; count], vec![Vector::zeros(); count]);
+        let Some(size) = self.bevel else { return (widths, ways) };
+        let mut first = 0;
+        for contour in &cap.shape {
+            for i in 0..contour.len() {
+                let before = &contour[(i + contour.len() - 1) % contour.len()];
+                let (is_blunt, way) = self.inwards(before, &contour[i]);
+                ways[first + i] = way;
+                widths[first + i] = if is_blunt { size.width } else { 0.0 };
+            }
+            first += contour.len();
+        }
+        (widths, ways)
+    }
+
+    fn corners(&self, cap: &Cap, widths: &[f64], ways: &[Vector]) -> Vec<BevelCorner> {
+        let corner = |(edge, (&width, way)): (&Edge, (&f64, &Vector))| {
+            let (way, drop) = (width * way, width * self.grid.step);
+            BevelCorner { point: moved(edge.a, way), at_rest: self.grid.step * self.at_rest(edge, way), drop }
+        };
+        cap.shape.iter().flatten().zip(widths.iter().zip(ways)).map(corner).collect()
+    }
+
+    /// Whether the corner between two edges has a bevel, and where it goes for one that is one step wide.
+    fn inwards(&self, before: &Edge, after: &Edge) -> (bool, Vector) {
         let is_inside = [before, after].iter().all(|edge| self.source(edge).slot == Slot::Inside);
         let normals = [before, after].map(wall_normal);
         let cosine = normals[0].dot(&normals[1]);
-        (is_inside && cosine > SHARP).then(|| -(normals[0] + normals[1]) / (1.0 + cosine))
+        let is_blunt = is_inside && cosine > SHARP;
+        (is_blunt, -(normals[0] + normals[1]) / (1.0 + cosine).max(1.0 + SHARP))
     }
 
     /// A way in the material beside an edge, as it is at rest.
@@ -147,17 +185,22 @@ impl Extrusion<'_> {
     pub(crate) fn strips(&self, contour: &[Edge], corners: &[BevelCorner], mesh: &mut Mesh) -> f64 {
         let (first, new) = (mesh.vertices.len(), mesh.triangles[Slot::Inside as usize].len());
         let (count, mut removed) = (contour.len(), 0.0);
-        let mut previous: Option<(Carried, Vector, [u32; 4])> = None;
+        let mut previous: Option<(Carried, [Vector; 2], [u32; 4])> = None;
         for (i, edge) in contour.iter().enumerate() {
             let (source, [p, q]) = (self.source(edge), [corners[i], corners[(i + 1) % count]]);
             if source.slot != Slot::Inside || (p.drop == 0.0 && q.drop == 0.0) {
                 previous = None;
                 continue;
             }
-            let (start, end, normal) = (source.at(edge.a), source.at(edge.b), wall_normal(edge));
+            let (start, end) = (source.at(edge.a), source.at(edge.b));
+            let normal = wall_normal(edge);
+            let direction = source.direction_at_rest().filter(|_| self.at_rest).unwrap_or(normal);
             let a = match previous {
-                Some((carried, other, vertices))
-                    if carried == start && other.dot(&normal) >= self.crease_angle.cos() =>
+                // What has folded right back has no normal in common.
+                Some((carried, others, vertices))
+                    if carried == start
+                        && others[0].dot(&direction) >= self.crease_angle.cos()
+                        && others[1].dot(&normal) > FOLDED =>
                 {
                     vertices
                 }
@@ -175,7 +218,7 @@ impl Extrusion<'_> {
                 triangles.extend([[a[0], b[1], a[1]], [a[2], a[3], b[3]]]);
                 removed += 2.0 * over_start * p.drop / 3.0;
             }
-            previous = Some((end, normal, b));
+            previous = Some((end, [direction, normal], b));
         }
         mesh.set_normals(first, Slot::Inside, new);
         removed
@@ -231,8 +274,8 @@ fn twice(a: GridPoint, b: GridPoint, c: GridPoint) -> f64 {
 }
 
 /// Makes the `widths` at the corners of a cap, which go `ways` per width, so small that its triangles and those of the
-/// strips keep their sense. A width below `least` grid steps becomes none.
-fn narrow(cap: &Cap, ways: &[Vector], widths: &mut [f64], least: f64) {
+/// strips keep their sense. A width below `least` grid steps becomes the `narrowest`.
+fn narrow(cap: &Cap, ways: &mut [Vector], widths: &mut [f64], least: f64, narrowest: Narrowest) {
     let old: Vec<GridPoint> = cap.corners().collect();
     loop {
         let outer = |k: usize| widths.get(k).is_some_and(|width| *width > 0.0);
@@ -270,14 +313,20 @@ fn narrow(cap: &Cap, ways: &[Vector], widths: &mut [f64], least: f64) {
             }
             first += contour.len();
         }
-        if !is_narrow.contains(&true) {
-            return;
-        }
-        for (width, is_narrow) in widths.iter_mut().zip(is_narrow) {
-            if is_narrow {
-                // A step or two would be lost in rounding.
-                *width = if NARROWED * *width < least.max(2.0) { 0.0 } else { NARROWED * *width };
+        let mut changes = false;
+        for k in (0..widths.len()).filter(|&k| is_narrow[k]) {
+            let next = NARROWED * widths[k];
+            if narrowest == Narrowest::Nothing {
+                (changes, widths[k]) = (true, if next < least.max(LOST) { 0.0 } else { next });
+            } else if next >= LOST {
+                (changes, widths[k]) = (true, next);
+            } else {
+                changes |= ways[k] != Vector::zeros();
+                ways[k] = Vector::zeros();
             }
+        }
+        if !changes {
+            return;
         }
     }
 }

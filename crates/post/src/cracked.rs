@@ -7,7 +7,7 @@ use crate::closed::shifts as closed;
 use crate::crumbs::hold_crumb;
 use crate::edges::MovedLines;
 use crate::error::PostError;
-use crate::explode::{together, ways};
+use crate::explode::{groups, together, ways};
 use crate::extrude::Extrusion;
 use crate::held_open::{parted_points, shifts as held_open};
 use crate::history::{attributes, histories};
@@ -71,10 +71,10 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
     }
     let numbers = numbers(&fragments, frame);
     let factor = options.explode.as_ref().map_or(0.0, |curve| curve.value(frame.time));
-    let ways = if factor == 0.0 { BTreeMap::new() } else { ways(frame) };
+    let shown_ways = if factor == 0.0 { BTreeMap::new() } else { ways(&frame.particles, &frame.particles.position) };
     let mut shifts = shifts(scene, frame.time, &cracks.cracks, options);
-    let beyond =
-        factor.abs() * farthest(ways.values()) + farthest(shifts.iter().flatten().flat_map(|s| [&s.above, &s.below]));
+    let beyond = factor.abs() * farthest(shown_ways.values())
+        + farthest(shifts.iter().flatten().flat_map(|s| [&s.above, &s.below]));
     let grids = grids(scene, frame, &cracks.cracks, beyond)?;
     let parted = parted_points(&cracks.cracks, &fragments, &numbers);
     for ((crack, parted), shifts) in cracks.cracks.iter().zip(parted).zip(&mut shifts) {
@@ -119,14 +119,29 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
     if options.cut == Cut::Rest {
         (0..).zip(&mut solids.interiors).for_each(|(body, interior)| interior.part(body, &cracks));
     }
-    let ways = if ways.is_empty() {
-        ways
+    let shown_ways = if shown_ways.is_empty() {
+        shown_ways
     } else {
-        let enclosed = |(&object, fragments): (&ObjectKey, &Vec<Vec<Vec<SourceEdge>>>)| {
-            (object, material(&fragments.iter().flatten().flatten().copied().collect::<Vec<_>>()))
+        let rest_grids: Vec<Grid> = scene
+            .bodies
+            .iter()
+            .map(|body| {
+                let (low, high) = body.region.bounds();
+                Grid::covering(&[low, high], 0.0)
+            })
+            .collect();
+        let at_rest = |(&object, fragments): (&ObjectKey, &Vec<Vec<Vec<SourceEdge>>>)| {
+            let grid = rest_grids[object.0 as usize];
+            let edges = fragments.iter().flatten().flatten().map(|edge| {
+                let [a, b] = [0, 1].map(|end| grid.snap(edge.carried[end].rest));
+                SourceEdge { a, b, ..*edge }
+            });
+            (object, material(&edges.collect::<Vec<_>>()))
         };
         let largest = options.explode.iter().flat_map(|curve| &curve.points).map(|point| point.1).fold(0.0, f64::max);
-        together(ways, objects.iter().map(enclosed).collect(), &grids, largest)
+        let rest_ways = ways(&frame.particles, &frame.particles.rest);
+        let members = groups(&rest_ways, objects.iter().map(at_rest).collect(), &rest_grids, largest);
+        together(shown_ways, &members)
     };
     let mut meshes = BTreeMap::new();
     let mut opened = Boundaries::new();
@@ -142,7 +157,7 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
     meshes.extend(solids.opened(&opened)?);
     // What has been checked stays as it is: the grid reaches so far.
     let apart = |(object, mesh): (ObjectKey, Mesh)| {
-        let offset = factor * ways.get(&object).copied().unwrap_or_default();
+        let offset = factor * shown_ways.get(&object).copied().unwrap_or_default();
         mesh.moved(grids[object.0 as usize].nearest(offset))
     };
     Ok(meshes.into_iter().map(apart).collect())
@@ -423,9 +438,37 @@ impl<'a> Solids<'a> {
         }
         caps.retain(|(cap, _)| area(&cap.shape, grid) >= self.options.smallest_fragment);
         let extrusion = self.extrusion(body, &sources);
-        let with_bevel = |(cap, within): (Cap, Vec<Carried>)| SolidCap { bevel: extrusion.bevel(&cap), cap, within };
-        let mesh = self.mesh(body, piece, &extrusion, caps.into_iter().map(with_bevel).collect());
+        let bevels_at_rest = self.bevels_at_rest(&extrusion, &caps, grids[1]);
+        let with_bevel = |((cap, within), widths): ((Cap, Vec<Carried>), Vec<f64>)| SolidCap {
+            bevel: extrusion.bevel_like(&cap, &widths),
+            cap,
+            within,
+        };
+        let mesh = self.mesh(body, piece, &extrusion, caps.into_iter().zip(bevels_at_rest).map(with_bevel).collect());
         mesh.as_ref().is_none_or(|mesh| (self.check)(mesh).is_ok()).then_some(mesh)
+    }
+
+    /// How wide the bevels of some caps that were made at rest are [m]: what there is room for there, on this `grid`.
+    fn bevels_at_rest(&self, extrusion: &Extrusion<'_>, caps: &[(Cap, Vec<Carried>)], grid: Grid) -> Vec<Vec<f64>> {
+        let scale = extrusion.grid.step / grid.step;
+        let Some(size) = extrusion.bevel else {
+            return caps.iter().map(|(cap, _)| vec![0.0; cap.shape.iter().map(Vec::len).sum()]).collect();
+        };
+        let ends = |source: &SourceEdge| [0, 1].map(|end| grid.snap(source.carried[end].rest));
+        let at_rest = |source: &SourceEdge| SourceEdge { a: ends(source)[0], b: ends(source)[1], ..*source };
+        let sources: Vec<SourceEdge> = extrusion.sources.iter().map(at_rest).collect();
+        let bevel = BevelSize { width: scale * size.width, least: scale * size.least };
+        let of_rest = Extrusion { grid, sources: &sources, bevel: Some(bevel), ..*extrusion };
+        let widths = |(cap, within): &(Cap, Vec<Carried>)| {
+            let edge = |edge: &Edge| {
+                let [a, b] = ends(extrusion.source(edge));
+                Edge { a, b, ..*edge }
+            };
+            let shape = cap.shape.iter().map(|contour| contour.iter().map(edge).collect()).collect();
+            let within = within.iter().map(|carried| grid.snap(carried.rest)).collect();
+            of_rest.bevel_widths(&Cap { shape, within, triangles: cap.triangles.clone() })
+        };
+        caps.iter().map(widths).collect()
     }
 
     fn extrusion<'b>(&'b self, body: u32, sources: &'b [SourceEdge]) -> Extrusion<'b> {

@@ -1,11 +1,12 @@
 //! Fragments shown apart.
 //!
 //! Each goes away from the middle of its body. What would go into another one on that way, a core in a ring, a splinter
-//! in the mouth of a C, goes along with it instead.
+//! in the mouth of a C, goes along with it instead. What that is, is told by fragments where they lie at rest: it is
+//! the same in all frames until one breaks, so that none jumps while others move.
 
 use crate::boolean::{Edge, Shape, common, twice_area};
 use crate::snap::{Grid, GridPoint};
-use fissure_scene::{Frame, Point, Vector};
+use fissure_scene::{ParticleFrame, Point, Vector};
 use std::collections::BTreeMap;
 
 /// Body and number of a fragment.
@@ -18,15 +19,14 @@ const STEPS: u32 = 8;
 const MOST: f64 = 0.02;
 
 /// The way of each fragment, by body and number, from the middle of the particles of its body to that of its own [m]:
-/// that times a factor is how far it is moved to be shown apart.
-pub(crate) fn ways(frame: &Frame) -> BTreeMap<Key, Vector> {
-    let particles = &frame.particles;
+/// that times a factor is how far it is moved to be shown apart. `places`: of the particles, now or at rest [m].
+pub(crate) fn ways(particles: &ParticleFrame, places: &[Point]) -> BTreeMap<Key, Vector> {
     let (mut bodies, mut pieces) = (BTreeMap::new(), BTreeMap::new());
     let mut add = |p: usize| {
         let body: &mut Sum = bodies.entry(particles.body[p]).or_default();
-        body.add(particles.position[p]);
+        body.add(places[p]);
         let piece: &mut Sum = pieces.entry((particles.body[p], particles.piece[p])).or_default();
-        piece.add(particles.position[p]);
+        piece.add(places[p]);
     };
     (0..particles.len()).for_each(&mut add);
     pieces.into_iter().map(|(key, piece)| (key, piece.mean() - bodies[&key.0].mean())).collect()
@@ -43,17 +43,23 @@ struct Moving {
     group: usize,
 }
 
-/// The `ways` with those of fragments that would go into each other, on the way to so many times theirs at most, made
-/// alike: the mean of theirs by their area. `shapes`: what fragments enclose, on the grids of their bodies.
-pub(crate) fn together(
-    mut ways: BTreeMap<Key, Vector>,
+/// Which fragments go along with each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Member {
+    /// The same for those that do.
+    group: usize,
+    /// What its way counts.
+    area: f64,
+}
+
+/// Which fragments go along with each other: those that would go into each other on the way to so many times their
+/// `ways` at most. `shapes`: what they enclose, on the grids of their bodies.
+pub(crate) fn groups(
+    ways: &BTreeMap<Key, Vector>,
     shapes: BTreeMap<Key, Vec<Shape>>,
     grids: &[Grid],
     largest: f64,
-) -> BTreeMap<Key, Vector> {
-    if largest == 0.0 {
-        return ways;
-    }
+) -> BTreeMap<Key, Member> {
     let moving = shapes.into_iter().filter(|(key, _)| ways.contains_key(key)).enumerate();
     // Of several bodies the coarsest grid: steps are powers of two.
     let step = grids.iter().map(|grid| grid.step).fold(0.0, f64::max);
@@ -62,9 +68,12 @@ pub(crate) fn together(
         Moving::new(key, shapes, group)
     };
     let mut all: Vec<Moving> = moving.filter_map(made).collect();
-    let own = ways.clone();
+    let members = |all: &[Moving]| -> BTreeMap<Key, Member> {
+        all.iter().map(|of| (of.key, Member { group: of.group, area: of.area })).collect()
+    };
     // In each round two groups at least become one.
     for _ in 0..all.len() {
+        let ways = together(ways.clone(), &members(&all));
         let mut pairs = Vec::new();
         for (i, p) in all.iter().enumerate() {
             for (j, q) in all.iter().enumerate().skip(i + 1) {
@@ -81,18 +90,23 @@ pub(crate) fn together(
             let (first, other) = (all[i].group.min(all[j].group), all[i].group.max(all[j].group));
             all.iter_mut().filter(|of| of.group == other).for_each(|of| of.group = first);
         }
-        let mut sums = BTreeMap::<usize, (Vector, f64, usize)>::new();
-        for of in &all {
-            let (sum, area, count) = sums.entry(of.group).or_insert((Vector::zeros(), 0.0, 0));
-            *sum += of.area * own[&of.key];
-            *area += of.area;
-            *count += 1;
-        }
-        for of in &all {
-            let (sum, area, count) = sums[&of.group];
-            if count > 1 {
-                ways.insert(of.key, sum / area);
-            }
+    }
+    members(&all)
+}
+
+/// The `ways` with those of fragments that go along with each other made alike: the mean of theirs by their area.
+pub(crate) fn together(mut ways: BTreeMap<Key, Vector>, members: &BTreeMap<Key, Member>) -> BTreeMap<Key, Vector> {
+    let mut sums = BTreeMap::<usize, (Vector, f64, usize)>::new();
+    for (key, member) in members {
+        let (sum, area, count) = sums.entry(member.group).or_insert((Vector::zeros(), 0.0, 0));
+        *sum += member.area * ways.get(key).copied().unwrap_or_default();
+        *area += member.area;
+        *count += 1;
+    }
+    for (key, member) in members {
+        let (sum, area, count) = sums[&member.group];
+        if count > 1 {
+            ways.insert(*key, sum / area);
         }
     }
     ways
@@ -173,7 +187,6 @@ impl Sum {
 mod tests {
     use super::*;
     use crate::boolean::SourceIndex;
-    use fissure_scene::ParticleFrame;
 
     /// Truth: by hand. Two halves of one body part, each from where it is now; another body stays.
     #[test]
@@ -181,7 +194,7 @@ mod tests {
         let position = [(0.0, 0.0), (0.0, 2.0), (4.0, 1.0), (9.0, 9.0)].map(|(x, y)| Point::new(x, y)).to_vec();
         let (body, piece) = (vec![0, 0, 0, 1], vec![0, 0, 1, 0]);
         let particles = ParticleFrame { id: vec![0, 1, 2, 3], body, piece, position, ..ParticleFrame::default() };
-        let ways = ways(&Frame { particles, ..Frame::default() });
+        let ways = ways(&particles, &particles.position);
         let middle = Point::new(4.0 / 3.0, 1.0);
         assert!((ways[&(0, 0)] - (Point::new(0.0, 1.0) - middle)).norm() < 1e-12);
         assert!((ways[&(0, 1)] - (Point::new(4.0, 1.0) - middle)).norm() < 1e-12);
@@ -244,7 +257,8 @@ mod tests {
                 if other.0 == 1 {
                     on_grids.entry(other).and_modify(|shapes| *shapes = on_grid(shapes.clone(), fine));
                 }
-                let found = together(ways.clone(), on_grids, &[grid, Grid { step: grid.step / fine }], 2.0);
+                let members = groups(&ways, on_grids, &[grid, Grid { step: grid.step / fine }], 2.0);
+                let found = together(ways.clone(), &members);
                 assert_eq!(found[&(0, 2)], ways[&(0, 2)]);
                 assert_eq!(found == ways, is_alone, "{out} {turn} {mirrored}");
                 assert_eq!(found[&(0, 0)] == found[&other], !is_alone);
@@ -262,7 +276,8 @@ mod tests {
             }
             let shapes = BTreeMap::from([((0, 0), made(&ring)), ((0, 1), made(&[&core]))]);
             let ways = BTreeMap::from([((0, 0), Vector::zeros()), ((0, 1), way(5, 1))]);
-            let found = together(ways, shapes, &[grid], 3.0);
+            let members = groups(&ways, shapes, &[grid], 3.0);
+            let found = together(ways, &members);
             assert_eq!(found[&(0, 0)], found[&(0, 1)]);
         }
     }

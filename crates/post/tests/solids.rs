@@ -899,3 +899,49 @@ fn smooth_paths_keep_what_ends_on_them() {
     let folded = front(&meshes).into_iter().filter(|[a, b, c]| (b - a).perp(&(c - a)) <= 0.0).count();
     assert_eq!(folded, 0);
 }
+
+/// Truth: by hand. A dovetail is drawn out of its other half, through it, over 60 frames: shown apart, each half goes
+/// on from frame to frame by no more than the factor times what it moved.
+#[test]
+fn fragments_shown_apart_do_not_jump() {
+    let region = square(20.0);
+    let path = [(10.0, 0.0), (10.0, 8.0), (6.0, 6.0), (6.0, 14.0), (10.0, 12.0), (10.0, 20.0)];
+    let rest: Vec<Point> = path.iter().map(|&(x, y)| Point::new(x, y)).collect();
+    let is_right = |p: Point| {
+        let edge = if (6.0..=14.0).contains(&p.y) { 6.0 } else { 10.0 };
+        p.x > edge
+    };
+    let scene = scene(region.clone());
+    let factor = 0.5;
+    let apart = Curve { points: vec![(0.0, factor)] };
+    let mut before: Option<Vec<Vector>> = None;
+    for step in 0..60 {
+        let shift = Vector::new(0.2 * f64::from(step), 0.0);
+        let still = vec![Vector::zeros(); rest.len()];
+        let below = vec![shift; rest.len()];
+        let (start, end) = (CrackEnd::Mouth, CrackEnd::Mouth);
+        let mut frame = frame(&region, 3, &[Opened { rest: rest.clone(), above: still, below, start, end }]);
+        for outline in &mut frame.outlines {
+            for (position, rest) in outline.position.iter_mut().zip(&outline.rest) {
+                *position += if rest.x > 10.0 { shift } else { Vector::zeros() };
+            }
+        }
+        frame.particles =
+            particles(&region, |p| (u32::from(is_right(p)), if is_right(p) { shift } else { Vector::zeros() }));
+        let middle = |options: &PostOptions| -> Vec<Vector> {
+            let meshes = post_frame(&scene, &frame, options).unwrap().parts.remove(0).1;
+            let mean = |mesh: &Mesh| {
+                let sum: Vector = mesh.vertices.iter().map(|v| Vector::new(v.position[0], v.position[1])).sum();
+                sum / mesh.vertices.len() as f64
+            };
+            meshes.iter().map(mean).collect()
+        };
+        let (plain, moved) = (options(&scene), PostOptions { explode: Some(apart.clone()), ..options(&scene) });
+        let offsets: Vec<Vector> = middle(&moved).iter().zip(middle(&plain)).map(|(a, b)| a - b).collect();
+        assert_eq!(offsets.len(), 2);
+        for (now, before) in offsets.iter().zip(before.iter().flatten()) {
+            assert!((now - before).norm() <= factor * 0.2 + 1e-3, "{step}: {before} {now}");
+        }
+        before = Some(offsets);
+    }
+}
