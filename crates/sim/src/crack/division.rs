@@ -518,7 +518,7 @@ impl Division {
         let mut segments = SmallVec::new();
         let Some(index) = self.line_of(crack) else { return segments };
         let line = &self.lines[index];
-        segments.extend([0, line.last as usize]);
+        segments.push(0);
         let cells = -i32::from(beside)..=i32::from(beside);
         for (i, j) in cells.clone().flat_map(|i| cells.clone().map(move |j| (i, j))) {
             let bucket = self.bucket(point + Vector::new(f64::from(i), f64::from(j)) * self.cell_size);
@@ -526,7 +526,11 @@ impl Division {
             let own = bucket[first..].iter().take_while(|s| s.line as usize == index);
             segments.extend(own.map(|s| line.of[line.index(s.segment)] as usize));
         }
-        segments.sort_unstable();
+        segments.push(line.last as usize);
+        // Those of one cell rise, but for continuations.
+        if !segments.is_sorted() {
+            segments.sort_unstable();
+        }
         segments.dedup();
         segments
     }

@@ -19,6 +19,8 @@ pub struct Elastic {
     pub effective_modulus: f64,
     /// Kolosov's κ [–]: 3-4ν in plane strain, (3-ν)/(1+ν) in plane stress.
     pub kolosov: f64,
+    /// See [`Elastic::rayleigh_wave_speed`].
+    rayleigh_wave_speed: f64,
 }
 
 impl Elastic {
@@ -31,7 +33,18 @@ impl Elastic {
             PlaneState::Strain => (lambda, e / (1.0 - nu * nu), 3.0 - 4.0 * nu),
             PlaneState::Stress => (2.0 * lambda * mu / (lambda + 2.0 * mu), e, (3.0 - nu) / (1.0 + nu)),
         };
-        Self { young_modulus: e, poisson_ratio: nu, density: material.density, mu, lambda, effective_modulus, kolosov }
+        let density = material.density;
+        let rayleigh_wave_speed = rayleigh_part(mu / (lambda + 2.0 * mu)) * (mu / density).sqrt();
+        Self {
+            young_modulus: e,
+            poisson_ratio: nu,
+            density,
+            mu,
+            lambda,
+            effective_modulus,
+            kolosov,
+            rayleigh_wave_speed,
+        }
     }
 
     /// Speed of dilatational waves in the plane, c_d = √((λ+2μ)/ρ) [m/s].
@@ -46,22 +59,26 @@ impl Elastic {
 
     /// Speed of Rayleigh waves c_R [m/s], the limit of a crack in mode I: 4√(1-c²/c_d²)√(1-c²/c_s²) = (2-c²/c_s²)².
     pub fn rayleigh_wave_speed(&self) -> f64 {
-        // Squared and divided by z = (c/c_s)², which removes the root at rest, this is a cubic with one root between 0
-        // and 1: it is -16(1-k) at 0 and 1 at 1, with k = (c_s/c_d)².
-        let k = self.mu / (self.lambda + 2.0 * self.mu);
-        let cubic = |z: f64| ((z - 8.0) * z + 8.0 * (3.0 - 2.0 * k)) * z - 16.0 * (1.0 - k);
-        let (mut low, mut high) = (0.0, 1.0);
-        // Each halving gains a bit; a double has 53 of them.
-        for _ in 0..54 {
-            let middle = 0.5 * (low + high);
-            if cubic(middle) < 0.0 {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        self.shear_wave_speed() * (0.5 * (low + high)).sqrt()
+        self.rayleigh_wave_speed
     }
+}
+
+/// Speed of Rayleigh waves over that of shear waves, c_R/c_s, where k = (c_s/c_d)².
+fn rayleigh_part(k: f64) -> f64 {
+    // Squared and divided by z = (c/c_s)², which removes the root at rest, the equation of the speed is a cubic with
+    // one root between 0 and 1: it is -16(1-k) at 0 and 1 at 1.
+    let cubic = |z: f64| ((z - 8.0) * z + 8.0 * (3.0 - 2.0 * k)) * z - 16.0 * (1.0 - k);
+    let (mut low, mut high) = (0.0, 1.0);
+    // Each halving gains a bit; a double has 53 of them.
+    for _ in 0..54 {
+        let middle = 0.5 * (low + high);
+        if cubic(middle) < 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    (0.5 * (low + high)).sqrt()
 }
 
 #[cfg(test)]

@@ -155,24 +155,11 @@ impl Probes {
         (changes, boxes): (&Changes, &[(Point, Point)]),
         turned: &[usize],
     ) -> bool {
-        let beside = &boxes[changes.boxes.len()..];
-        let has_riders = |p: Point| beside.iter().any(|(low, high)| p >= *low && p <= *high);
-        let within = |p: Point| boxes.iter().any(|(low, high)| p >= *low && p <= *high);
+        let ridden = &boxes[changes.boxes.len()..];
+        let within = |boxes: &[(Point, Point)], p: Point| boxes.iter().any(|(low, high)| p >= *low && p <= *high);
         let seen = Vector::repeat(SEEN * lattice.grid.cell_size);
-        let sees = |p: Point| boxes.iter().any(|(low, high)| p >= low - seen && p <= high + seen);
         let turned: Vec<Point> = turned.iter().map(|&node| lattice.grid.position(node)).collect();
         let stencil = (lattice.reach() + 0.5) * lattice.grid.cell_size;
-        let has_changed = |probe: &Probe| {
-            if probe.is_local {
-                let is_beside = |node: &Point| (node - probe.rest).amax() < stencil;
-                turned.iter().any(is_beside)
-                    || has_riders(probe.rest)
-                    || (within(probe.nudged) || within(probe.rest))
-                        && lattice.may_have_changed(changes, probe.rest, probe.nudged)
-            } else {
-                sees(probe.rest)
-            }
-        };
         // A node that has turned is as far as a stencil from what has been cut anew, and seen from as far.
         let reach = Vector::repeat(SEEN.max(2.0 * lattice.reach() + 2.0) * lattice.grid.cell_size);
         let suspicious: Vec<(Point, Point)> = boxes.iter().map(|(low, high)| (low - reach, high + reach)).collect();
@@ -183,11 +170,26 @@ impl Probes {
             };
             let near: Vec<(Point, Point)> =
                 suspicious.iter().copied().filter(|(low, high)| crack.may_meet(*low, *high)).collect();
-            if !near.is_empty() || changed.iter().any(|id| id.crack == index) {
-                lattice.follow_faces(crack, faces, &near, has_changed);
+            if near.is_empty() && changed.iter().all(|id| id.crack != index) {
+                continue;
             }
+            // Of all that has changed, most is far from most cracks.
+            let meets = |&(low, high): &(Point, Point)| crack.may_meet(low - seen, high + seen);
+            let around: Vec<(Point, Point)> = boxes.iter().copied().filter(meets).collect();
+            let by = Vector::repeat(stencil);
+            let turned: Vec<Point> =
+                turned.iter().copied().filter(|node| crack.may_meet(node - by, node + by)).collect();
+            lattice.follow_faces(crack, faces, &near, |probe| {
+                if !probe.is_local {
+                    return around.iter().any(|(low, high)| probe.rest >= low - seen && probe.rest <= high + seen);
+                }
+                turned.iter().any(|node| (node - probe.rest).amax() < stencil)
+                    || within(ridden, probe.rest)
+                    || (within(&around, probe.nudged) || within(&around, probe.rest))
+                        && lattice.may_have_changed(changes, probe.rest, probe.nudged)
+            });
         }
-        for probe in self.outlines.vertices_mut().filter(|probe| within(probe.rest)) {
+        for probe in self.outlines.vertices_mut().filter(|probe| within(boxes, probe.rest)) {
             probe.entries = lattice.probe_entries(probe.body, probe.rest, probe.nudged);
         }
         let mut has_mouthed = false;
