@@ -66,6 +66,8 @@ struct Summary {
     displacements: (Vector, Vector),
     /// First and last body.
     bodies: (u32, u32),
+    /// First and last piece.
+    pieces: (u32, u32),
     /// Whether all lie on cracks.
     is_on_crack: bool,
 }
@@ -76,18 +78,19 @@ impl Summary {
         let of_end = |v: u32| {
             let vertex = surface.vertex(v);
             let moved = place[v as usize] - vertex.rest;
-            let (displacements, bodies) = ((moved, moved), (vertex.body, vertex.body));
-            Self { displacements, bodies, is_on_crack: vertex.is_on_crack }
+            let [bodies, pieces] = [vertex.body, vertex.piece].map(|number| (number, number));
+            Self { displacements: (moved, moved), bodies, pieces, is_on_crack: vertex.is_on_crack }
         };
         ends.map(of_end).fold(of_end(edge), Self::with)
     }
 
     fn with(self, other: Self) -> Self {
-        let ((low, high), (first, last)) = (self.displacements, self.bodies);
-        let ((other_low, other_high), (other_first, other_last)) = (other.displacements, other.bodies);
+        let ((low, high), (other_low, other_high)) = (self.displacements, other.displacements);
+        let both = |own: (u32, u32), other: (u32, u32)| (own.0.min(other.0), own.1.max(other.1));
         Self {
             displacements: (low.inf(&other_low), high.sup(&other_high)),
-            bodies: (first.min(other_first), last.max(other_last)),
+            bodies: both(self.bodies, other.bodies),
+            pieces: both(self.pieces, other.pieces),
             is_on_crack: self.is_on_crack && other.is_on_crack,
         }
     }
@@ -98,8 +101,8 @@ pub(super) struct Surroundings<'a> {
     cells: &'a Cells,
     /// Of each cell with edges, sorted.
     summaries: Vec<(Key, Summary)>,
-    /// Whatever moves less than this relative to each other has moved alike [m].
-    slide: f64,
+    /// What moves less than this relative to each other has moved alike [m]: within one piece, and otherwise.
+    slides: [f64; 2],
     /// The cell that was asked for last.
     key: Option<Key>,
     /// Where its edges and those of the cells beside it are.
@@ -108,15 +111,15 @@ pub(super) struct Surroundings<'a> {
 }
 
 impl<'a> Surroundings<'a> {
-    /// Looks at all cells, for vertices at `place` [m]. `slide`: what moves less than this relative to each other has
-    /// moved alike [m].
-    pub(super) fn new(cells: &'a Cells, surface: &Surface, place: &[Point], slide: f64) -> Self {
+    /// Looks at all cells, for vertices at `place` [m]. `slides`: what moves less than this relative to each other has
+    /// moved alike [m], within one piece and otherwise.
+    pub(super) fn new(cells: &'a Cells, surface: &Surface, place: &[Point], slides: [f64; 2]) -> Self {
         let summary = |group: &[(Key, Placed)]| {
             let of = |(_, placed): &(Key, Placed)| Summary::of(surface, place, placed.edge);
             Some((group.first()?.0, group.iter().map(of).reduce(Summary::with)?))
         };
         let summaries = cells.edges.chunk_by(|a, b| a.0 == b.0).filter_map(summary).collect();
-        Self { cells, summaries, slide, key: None, ranges: [0..0, 0..0, 0..0], is_calm: true }
+        Self { cells, summaries, slides, key: None, ranges: [0..0, 0..0, 0..0], is_calm: true }
     }
 
     /// Goes to a place. Returns whether all edges within its reach are crack faces of one body that have moved alike.
@@ -128,7 +131,8 @@ impl<'a> Surroundings<'a> {
             let summaries = ranges_around(&self.summaries, key).into_iter().flat_map(|range| &self.summaries[range]);
             self.is_calm = summaries.map(|s| s.1).reduce(Summary::with).is_none_or(|all| {
                 let (low, high) = all.displacements;
-                all.is_on_crack && all.bodies.0 == all.bodies.1 && (high - low).norm() < self.slide
+                let slide = self.slides[usize::from(all.pieces.0 != all.pieces.1)];
+                all.is_on_crack && all.bodies.0 == all.bodies.1 && (high - low).norm() < slide
             });
         }
         self.is_calm

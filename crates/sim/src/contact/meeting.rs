@@ -1,6 +1,6 @@
 //! The edge that a vertex comes to, the gap between them and the normal.
 
-use super::neighbours::Neighbour;
+use super::neighbours::{MATCHED, Neighbour};
 use super::surface::{Surface, looks};
 use fissure_plane::{Point, Vector};
 
@@ -17,7 +17,7 @@ const NEWTON_ROUNDS: usize = 4;
 
 /// Gaps wider than this, in cells, are not looked at; nor is what lies deeper than this within an edge, which is on the
 /// other side of a thin part.
-const WIDEST: f64 = 1.0;
+pub(super) const WIDEST: f64 = 1.0;
 
 /// A vertex beside an edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,16 +45,16 @@ pub(crate) fn meeting(
 ) -> Option<Meeting> {
     let x = place[vertex as usize];
     let own_normals = surface.normals_around(vertex, place);
-    let mut nearest = (f64::INFINITY, None);
+    let mut nearest = ((WIDEST * cell_size).powi(2), None);
     for neighbour in near {
         let Some(next) = surface.next(neighbour.edge) else { continue };
         let (a, b) = (place[neighbour.edge as usize], place[next as usize]);
         let beside = (x - a).dot(&(b - a)) / (b - a).norm_squared();
         let along = beside.clamp(0.0, 1.0);
         let away = x - (a + (b - a) * along);
-        let distance = away.norm();
+        let distance_squared = away.norm_squared();
         // Most are farther than one before, or too far to be met at all.
-        if distance >= nearest.0 || distance > WIDEST * cell_size {
+        if distance_squared >= nearest.0 {
             continue;
         }
         let Some(flat) = surface.edge_normal(neighbour.edge, place) else { continue };
@@ -65,15 +65,15 @@ pub(crate) fn meeting(
         }
         // Where flat sides lie on each other, a vertex of one that is just beyond the corner of the other is beside it.
         let out = if is_beyond && away.dot(&flat) >= 0.0 { away.try_normalize(0.0).unwrap_or(flat) } else { flat };
-        if looks(own_normals, -out) && distance < nearest.0 {
-            nearest = (distance, Some((neighbour, next, flat, along, is_beyond)));
+        if looks(own_normals, -out) {
+            nearest = (distance_squared, Some((neighbour, next, flat, along, is_beyond)));
         }
     }
     let (neighbour, next, flat, along, is_beyond) = nearest.1?;
-    if !neighbour.can_touch {
+    let ends = [neighbour.edge, next];
+    if !neighbour.can_touch || were_within(surface, vertex, ends, along, MATCHED * cell_size) {
         return None;
     }
-    let ends = [neighbour.edge, next];
     let at_ends = ends.map(|end| surface.round_normal(end, place));
     let away = x - (place[ends[0] as usize] + (place[ends[1] as usize] - place[ends[0] as usize]) * along);
     let end = usize::from(along >= 0.5);
@@ -85,6 +85,14 @@ pub(crate) fn meeting(
         }
     };
     Some(Meeting { ends, along, gap: away.dot(&normal), normal })
+}
+
+/// Whether a vertex and the place `along` an edge lie on two pieces of one body, and within `distance` [m] of each
+/// other at rest.
+pub(crate) fn were_within(surface: &Surface, vertex: u32, ends: [u32; 2], along: f64, distance: f64) -> bool {
+    let [own, from, to] = [vertex, ends[0], ends[1]].map(|v| surface.vertex(v));
+    let away = from.rest + (to.rest - from.rest) * along - own.rest;
+    own.body == from.body && own.piece != from.piece && away.norm_squared() < distance.powi(2)
 }
 
 /// The meeting of `x` with a round surface: the curve through the ends of an edge that has their `normals`, beside
@@ -127,7 +135,7 @@ fn around_corner(away: Vector, corner: Vector, cell_size: f64) -> Vector {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::neighbours::Neighbours;
+    use super::super::neighbours::{MOST_MOVED, Neighbours};
     use super::*;
 
     /// A ring of points as a body of its own.
@@ -138,6 +146,13 @@ mod tests {
             surface.push(p, body, 0, false);
         });
         (0..count).for_each(|k| surface.link(first + k, first + (k + 1) % count));
+    }
+
+    /// What may touch before the next look.
+    fn due(surface: &Surface, place: &[Point], cell_size: f64) -> Neighbours {
+        let mut found = Neighbours::find(surface, place, (cell_size, MOST_MOVED), true);
+        found.choose(surface, MOST_MOVED * cell_size, cell_size);
+        found
     }
 
     fn regular(center: Point, radius: f64, count: usize, turn: f64) -> Vec<Point> {
@@ -156,7 +171,7 @@ mod tests {
             add_ring(&mut surface, 0, &regular(Point::origin(), 3.0, 96, 0.3));
             add_ring(&mut surface, 1, &regular(Point::origin() + direction * 6.1, 3.0, 96, turn));
             let place = surface.places_at_rest();
-            let near = Neighbours::find(&surface, &place, 0.4, true);
+            let near = due(&surface, &place, 0.4);
             let found: Vec<(u32, Meeting)> =
                 near.iter().filter_map(|(v, edges)| Some((v, meeting(&surface, &place, v, edges, 0.4)?))).collect();
             let least = found.iter().map(|(_, m)| m.gap).fold(f64::INFINITY, f64::min);
@@ -181,7 +196,7 @@ mod tests {
             add_ring(&mut surface, 0, &points);
             add_ring(&mut surface, 1, &[place, place + Vector::new(0.4, 2.0), place + Vector::new(-0.4, 2.0)]);
             let all = surface.places_at_rest();
-            let near = Neighbours::find(&surface, &all, 0.4, true);
+            let near = due(&surface, &all, 0.4);
             let vertex = points.len() as u32;
             near.iter()
                 .find(|(v, _)| *v == vertex)
@@ -215,7 +230,7 @@ mod tests {
             let tip = Point::from(corner);
             add_ring(&mut surface, 1, &[tip, tip + Vector::new(0.4, 0.9), tip + Vector::new(-0.4, 0.9)]);
             let place = surface.places_at_rest();
-            let near = Neighbours::find(&surface, &place, 0.2, true);
+            let near = due(&surface, &place, 0.2);
             let found = near.iter().find(|(v, _)| *v == 4).and_then(|(v, e)| meeting(&surface, &place, v, e, 0.2));
             let m = found.unwrap();
             let (gap, n, expected) = (m.gap, m.normal, Vector::from(normal));
@@ -236,7 +251,7 @@ mod tests {
             }
             let mut surface = Surface::default();
             add_ring(&mut surface, 0, &points);
-            Neighbours::find(&surface, &surface.places_at_rest(), 0.2, true)
+            due(&surface, &surface.places_at_rest(), 0.2)
         };
         let slot = |width: f64, depth: f64| {
             let (left, right, root) = (2.0 - 0.5 * width, 2.0 + 0.5 * width, 3.0 - depth);

@@ -1,11 +1,12 @@
 //! Which vertices of surfaces can come to which edges before the next look.
 
 use super::cells::{Cells, Surroundings};
+use super::meeting::WIDEST;
 use super::surface::Surface;
-use fissure_plane::{Point, Vector, nearest_on_segment};
+use fissure_plane::{Point, Vector, distance_to_segment, nearest_on_segment};
 
-/// Vertices find edges within so many cells.
-pub(crate) const REACH: f64 = 2.0;
+/// What is farther away than this, in cells, does not touch: round surfaces lie a little before their edges.
+const TOUCHES: f64 = 0.2;
 
 /// Surfaces whose normals have a larger product than this do not face each other, however things turn until the next
 /// look.
@@ -15,6 +16,16 @@ const MAY_FACE: f64 = 0.5;
 /// thin part, of a corner, and the faces of a crack that have hardly slid, which touch node by node.
 pub(crate) const TOGETHER: f64 = 2.5;
 
+/// Pieces that a body has come to match where they are nearer to each other at rest than this, in cells: faces that
+/// have hardly slid touch node by node there.
+pub(crate) const MATCHED: f64 = 0.5;
+
+/// Neighbours are looked for anew when surfaces may have come nearer to each other by this, in cells.
+pub(crate) const MOST_MOVED: f64 = 0.8;
+
+/// The same where a body has come to pieces: what may slide by [`MATCHED`] until then has slid by the rest at a look.
+pub(crate) const MOST_MOVED_OF_PIECES: f64 = 0.3;
+
 /// A gap at rest whose two sides are so many times as long as it is wide can close.
 const NARROW: f64 = 4.0;
 
@@ -23,34 +34,51 @@ const NARROW: f64 = 4.0;
 pub(crate) struct Neighbour {
     /// The edge.
     pub(crate) edge: u32,
-    /// Whether the two can touch. Others have to be known as well: a vertex that is nearer to one of them is within its
-    /// own surroundings, whatever lies behind.
+    /// Whether the two can touch; pieces that match, where they no longer do. Others have to be known as well: a vertex
+    /// that is nearer to one of them is within its own surroundings, whatever lies behind.
     pub(crate) can_touch: bool,
+}
+
+/// A vertex that can touch something.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Comer {
+    vertex: u32,
+    /// How far it was from the nearest edge that it can touch when that was found, none within one [m].
+    distance: f64,
 }
 
 /// The vertices with edges near them.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Neighbours {
     /// Vertices that can touch something, rising.
-    vertices: Vec<u32>,
+    comers: Vec<Comer>,
     /// First neighbour of each; one more at the end.
     first: Vec<u32>,
     edges: Vec<Neighbour>,
+    /// Those of the vertices that may touch something by now, by their place in the list.
+    due: Vec<u32>,
     /// All vertices whose places are asked for, rising.
     asked: Vec<u32>,
 }
 
 impl Neighbours {
-    /// Finds all, for vertices of `surface` that are at `place` [m] now; `cell_size` [m]. `cracks_touch`: whether crack
-    /// faces do.
-    pub(crate) fn find(surface: &Surface, place: &[Point], cell_size: f64, cracks_touch: bool) -> Self {
+    /// Finds all, for vertices of `surface` that are at `place` [m] now; `cell_size` [m]. `most_moved`: by how much
+    /// they may come nearer to each other before the next look, in cells. `cracks_touch`: whether crack faces do.
+    pub(crate) fn find(
+        surface: &Surface,
+        place: &[Point],
+        (cell_size, most_moved): (f64, f64),
+        cracks_touch: bool,
+    ) -> Self {
         let rest = surface.places_at_rest();
-        let search = Search { surface, place, rest: &rest, cell_size, cracks_touch };
-        let cells = Cells::new(surface, place, REACH * cell_size);
-        let mut around = Surroundings::new(&cells, surface, place, search.least_slide());
+        let search = Search { surface, place, rest: &rest, cell_size, most_moved, cracks_touch };
+        let cells = Cells::new(surface, place, search.reach());
+        let slides = [true, false].map(|are_one| search.least_slide(are_one));
+        let mut around = Surroundings::new(&cells, surface, place, slides);
         let edge_normals: Vec<Option<Vector>> =
             (0..surface.len() as u32).map(|edge| surface.edge_normal(edge, place)).collect();
         let mut found = Self { first: vec![0], ..Self::default() };
+        let touches = (most_moved + TOUCHES) * cell_size;
         let mut near = Vec::new();
         for vertex in 0..surface.len() as u32 {
             let x = place[vertex as usize];
@@ -64,21 +92,36 @@ impl Neighbours {
             near.sort_unstable();
             let first = found.edges.len();
             found.edges.extend(near.iter().map(|&edge| Neighbour { edge, can_touch: search.can_touch(vertex, edge) }));
-            if !found.edges[first..].iter().any(|near| near.can_touch && !search.stays(vertex, near.edge)) {
+            let comes = |near: &&Neighbour| near.can_touch && !search.stays(vertex, near.edge);
+            let coming = found.edges[first..].iter().filter(comes);
+            let distance = coming.map(|near| search.way_out(vertex, near.edge)).fold(f64::INFINITY, f64::min);
+            if distance > touches {
                 found.edges.truncate(first);
                 continue;
             }
-            found.vertices.push(vertex);
+            found.comers.push(Comer { vertex, distance });
             found.first.push(found.edges.len() as u32);
         }
-        found.ask(surface);
         found
+    }
+
+    /// Chooses the vertices that may touch something when all have come nearer to each other by at most `moved` [m]
+    /// since neighbours were found.
+    pub(crate) fn choose(&mut self, surface: &Surface, moved: f64, cell_size: f64) {
+        let is_due = |&k: &u32| self.comers[k as usize].distance <= moved + TOUCHES * cell_size;
+        let due: Vec<u32> = (0..self.comers.len() as u32).filter(is_due).collect();
+        if due != self.due {
+            self.due = due;
+            self.ask(surface);
+        }
     }
 
     /// Notes whose places are asked for: with normals, those of vertices beside.
     fn ask(&mut self, surface: &Surface) {
-        let ends = self.edges.iter().flat_map(|n| [Some(n.edge), surface.next(n.edge)]).flatten();
-        let mut asked: Vec<u32> = self.vertices.iter().copied().chain(ends).collect();
+        let ends = self.iter().flat_map(|(vertex, near)| {
+            near.iter().flat_map(|n| [Some(n.edge), surface.next(n.edge)]).flatten().chain([vertex])
+        });
+        let mut asked: Vec<u32> = ends.collect();
         asked.sort_unstable();
         asked.dedup();
         let beside: Vec<u32> = asked.iter().flat_map(|&v| [surface.previous(v), surface.next(v)]).flatten().collect();
@@ -88,15 +131,20 @@ impl Neighbours {
         self.asked = asked;
     }
 
-    /// Whether nothing can touch.
+    /// Whether nothing can touch before the next look.
     pub(crate) fn is_empty(&self) -> bool {
-        self.vertices.is_empty()
+        self.comers.is_empty()
     }
 
-    /// The vertices that can touch something, with the edges near them.
+    /// Whether something may touch by now.
+    pub(crate) fn are_due(&self) -> bool {
+        !self.due.is_empty()
+    }
+
+    /// The vertices that may touch something by now, with the edges near them.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (u32, &[Neighbour])> {
-        let ranges = self.first.windows(2).map(|w| w[0] as usize..w[1] as usize);
-        self.vertices.iter().zip(ranges).map(|(&vertex, range)| (vertex, &self.edges[range]))
+        let range = |k: usize| self.first[k] as usize..self.first[k + 1] as usize;
+        self.due.iter().map(move |&k| (self.comers[k as usize].vertex, &self.edges[range(k as usize)]))
     }
 
     /// The vertices whose places are asked for, rising.
@@ -111,18 +159,35 @@ struct Search<'a> {
     place: &'a [Point],
     rest: &'a [Point],
     cell_size: f64,
+    most_moved: f64,
     cracks_touch: bool,
 }
 
 impl Search<'_> {
+    /// What is farther apart than this now is met by nothing before the next look [m].
+    fn reach(&self) -> f64 {
+        (WIDEST + self.most_moved) * self.cell_size
+    }
+
     fn is_near(&self, vertex: u32, edge: u32) -> bool {
         let Some(next) = self.surface.next(edge) else { return false };
         if edge == vertex || next == vertex {
             return false;
         }
-        let x = self.place[vertex as usize];
-        let nearest = nearest_on_segment(self.place[edge as usize], self.place[next as usize], x);
-        (nearest - x).norm_squared() <= (REACH * self.cell_size).powi(2)
+        self.distance_to(vertex, [edge, next]) <= self.reach()
+    }
+
+    /// How far a vertex is before an edge now, none behind it [m].
+    fn way_out(&self, vertex: u32, edge: u32) -> f64 {
+        let Some(next) = self.surface.next(edge) else { return f64::INFINITY };
+        let away = self.place[vertex as usize] - self.place[edge as usize];
+        let is_behind = self.surface.edge_normal(edge, self.place).is_some_and(|normal| normal.dot(&away) < 0.0);
+        if is_behind { 0.0 } else { self.distance_to(vertex, [edge, next]) }
+    }
+
+    fn distance_to(&self, vertex: u32, ends: [u32; 2]) -> f64 {
+        let [x, from, to] = [vertex, ends[0], ends[1]].map(|v| self.place[v as usize]);
+        distance_to_segment(x, from, to)
     }
 
     /// Whether a vertex and an edge of one body, one of them on a crack, have moved so much alike that they cannot be
@@ -133,12 +198,13 @@ impl Search<'_> {
         let slid = |end: u32| (self.displacement(end) - self.displacement(vertex)).norm_squared();
         of_vertex.body == from.body
             && (of_vertex.is_on_crack || from.is_on_crack || to.is_on_crack)
-            && slid(edge).max(slid(next)) < self.least_slide().powi(2)
+            && slid(edge).max(slid(next)) < self.least_slide(of_vertex.piece == from.piece).powi(2)
     }
 
-    /// What does not belong together and is near has moved by more than this relative to each other [m].
-    fn least_slide(&self) -> f64 {
-        (TOGETHER - REACH) * self.cell_size
+    /// What does not belong together, of one piece (`are_one`) or of two of one body, and touches before the next look,
+    /// has moved by more than this relative to each other [m].
+    fn least_slide(&self, are_one: bool) -> f64 {
+        if are_one { TOGETHER * self.cell_size - self.reach() } else { (MATCHED - self.most_moved) * self.cell_size }
     }
 
     fn displacement(&self, vertex: u32) -> Vector {
@@ -160,6 +226,10 @@ impl Search<'_> {
         let distance = away.norm();
         if distance >= TOGETHER * self.cell_size {
             return true;
+        }
+        if of_vertex.piece != from.piece {
+            // Where on the edge, tells the moment.
+            return [from, to].iter().any(|end| (end.rest - of_vertex.rest).norm() >= MATCHED * self.cell_size);
         }
         // The two sides of a drawn gap, but for its root.
         let through_gap = self.surface.normal(vertex, self.rest).is_some_and(|n| n.dot(&away) > 0.0);
@@ -188,13 +258,15 @@ impl Search<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::meeting::{Meeting, meeting};
     use super::*;
     use proptest::prelude::*;
 
-    /// Two rings that bend and move, the second with a crack drawn into it, its first half on the crack.
-    fn moved(count: usize, slides: &[(f64, f64)], second_body: u32, turn: f64) -> (Surface, Vec<Point>) {
+    /// Two rings that bend and move, the second with a crack drawn into it, its first half on the crack: two bodies,
+    /// two pieces of one, or one piece.
+    fn moved(count: usize, slides: &[(f64, f64)], parts: usize, turn: f64) -> (Surface, Vec<Point>) {
         let mut surface = Surface::default();
-        for (ring, body) in [0, second_body].into_iter().enumerate() {
+        for (ring, body) in [0, u32::from(parts == 0)].into_iter().enumerate() {
             let first = surface.len() as u32;
             for k in 0..count {
                 let angle = std::f64::consts::TAU * k as f64 / count as f64;
@@ -203,6 +275,8 @@ mod tests {
             }
             (0..count as u32).for_each(|k| surface.link(first + k, first + (k + 1) % count as u32));
         }
+        let joined: &[[u32; 2]] = if parts == 2 { &[[0, count as u32]] } else { &[] };
+        surface.number_pieces(joined);
         let of_ring = |v: usize| if v < count { Vector::zeros() } else { Vector::new(-turn, 0.3 * turn) };
         let slide = |v: usize| slides[v * slides.len() / (2 * count)];
         let moved = |(v, rest): (usize, Point)| rest + of_ring(v) + Vector::new(slide(v).0, slide(v).1);
@@ -211,31 +285,42 @@ mod tests {
     }
 
     proptest! {
-        /// Truth: every vertex with every edge.
+        /// Truth: every vertex with every edge. After the one ring has moved on by what it may, all that touch are
+        /// found.
         #[test]
-        fn neighbours_are_those_of_all_pairs(
+        fn what_touches_before_the_next_look_is_found(
             count in 8..60_usize,
             slides in prop::collection::vec((-0.3..0.3_f64, -0.3..0.3_f64), 1..12),
-            second_body in 0..2_u32,
+            parts in 0..3_usize,
             turn in 0.0..0.6_f64,
             cell_size in 0.05..0.4_f64,
+            (part, heading) in (0.0..1.0_f64, 0.0..std::f64::consts::TAU),
         ) {
-            let (surface, place) = moved(count, &slides, second_body, turn);
+            let (surface, mut place) = moved(count, &slides, parts, turn);
+            let most_moved = if parts == 1 { MOST_MOVED_OF_PIECES } else { MOST_MOVED };
+            let mut found = Neighbours::find(&surface, &place, (cell_size, most_moved), true);
+            let by = part * most_moved * cell_size;
+            found.choose(&surface, by, cell_size);
             let rest = surface.places_at_rest();
-            let search = Search { surface: &surface, place: &place, rest: &rest, cell_size, cracks_touch: true };
-            let mut expected = Vec::new();
-            for vertex in 0..surface.len() as u32 {
-                let Some(normal) = surface.normal(vertex, &place) else { continue };
-                let faces = |&edge: &u32| surface.edge_normal(edge, &place).is_some_and(|n| n.dot(&normal) < MAY_FACE);
-                let near = (0..surface.len() as u32).filter(faces).filter(|&edge| search.is_near(vertex, edge));
-                let near: Vec<Neighbour> =
-                    near.map(|edge| Neighbour { edge, can_touch: search.can_touch(vertex, edge) }).collect();
-                if near.iter().any(|neighbour| neighbour.can_touch) {
-                    expected.push((vertex, near));
-                }
-            }
-            let found = Neighbours::find(&surface, &place, cell_size, true);
-            let found: Vec<(u32, Vec<Neighbour>)> = found.iter().map(|(v, near)| (v, near.to_vec())).collect();
+            let all = |vertex: u32| {
+                let search = Search { surface: &surface, place: &place, rest: &rest, cell_size, most_moved, cracks_touch: true };
+                let normal = surface.normal(vertex, &place);
+                let faces = |edge: &u32| {
+                    let of_edge = surface.edge_normal(*edge, &place);
+                    of_edge.zip(normal).is_some_and(|(of_edge, normal)| of_edge.dot(&normal) < MAY_FACE)
+                };
+                let others = (0..surface.len() as u32).filter(|&e| e != vertex && surface.next(e) != Some(vertex));
+                let near = |edge: u32| Neighbour { edge, can_touch: search.can_touch(vertex, edge) };
+                others.filter(faces).map(near).collect::<Vec<_>>()
+            };
+            let every: Vec<(u32, Vec<Neighbour>)> = (0..surface.len() as u32).map(|v| (v, all(v))).collect();
+            place[count..].iter_mut().for_each(|p| *p += Vector::new(heading.cos(), heading.sin()) * by);
+            let touches = |(vertex, near): (u32, &[Neighbour])| {
+                let met = meeting(&surface, &place, vertex, near, cell_size)?;
+                (met.gap < 0.1 * cell_size).then_some((vertex, met))
+            };
+            let expected: Vec<(u32, Meeting)> = every.iter().filter_map(|(v, near)| touches((*v, near))).collect();
+            let found: Vec<(u32, Meeting)> = found.iter().filter_map(touches).collect();
             prop_assert_eq!(found, expected);
         }
     }

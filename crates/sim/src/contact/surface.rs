@@ -1,6 +1,7 @@
 //! Surfaces as chains of vertices with the material on their left.
 
 use fissure_plane::{Point, Vector};
+use petgraph::unionfind::UnionFind;
 
 /// No vertex.
 const NONE: u32 = u32::MAX;
@@ -22,6 +23,8 @@ pub(crate) struct SurfaceVertex {
     pub(crate) material: u32,
     /// Whether it lies on a crack, a mouth included.
     pub(crate) is_on_crack: bool,
+    /// The piece of material that it belongs to: see [`Surface::number_pieces`].
+    pub(crate) piece: u32,
     next: u32,
     previous: u32,
 }
@@ -35,7 +38,7 @@ pub(crate) struct Surface {
 impl Surface {
     /// Adds a vertex without edges. Returns its number.
     pub(crate) fn push(&mut self, rest: Point, body: u32, material: u32, is_on_crack: bool) -> u32 {
-        self.vertices.push(SurfaceVertex { rest, body, material, is_on_crack, next: NONE, previous: NONE });
+        self.vertices.push(SurfaceVertex { rest, body, material, is_on_crack, piece: 0, next: NONE, previous: NONE });
         self.vertices.len() as u32 - 1
     }
 
@@ -55,6 +58,19 @@ impl Surface {
         let next = std::mem::replace(&mut self.vertices[from as usize].next, NONE);
         if next != NONE {
             self.vertices[next as usize].previous = NONE;
+        }
+    }
+
+    /// Numbers the pieces of material by their surfaces: what edges join is of one piece, and so are the two vertices
+    /// of each of the `joined` pairs.
+    pub(crate) fn number_pieces(&mut self, joined: &[[u32; 2]]) {
+        let mut pieces = UnionFind::new(self.len());
+        let edges = (0..self.len() as u32).filter_map(|from| Some([from, self.next(from)?]));
+        for [first, second] in edges.chain(joined.iter().copied()) {
+            pieces.union(first, second);
+        }
+        for (vertex, piece) in self.vertices.iter_mut().zip(pieces.into_labeling()) {
+            vertex.piece = piece;
         }
     }
 
@@ -78,6 +94,11 @@ impl Surface {
     pub(crate) fn previous(&self, vertex: u32) -> Option<u32> {
         let previous = self.vertices[vertex as usize].previous;
         (previous != NONE).then_some(previous)
+    }
+
+    /// Whether an edge begins or ends at a vertex.
+    pub(crate) fn has_edge(&self, vertex: u32) -> bool {
+        self.next(vertex).or(self.previous(vertex)).is_some()
     }
 
     /// Where all vertices are at rest [m].

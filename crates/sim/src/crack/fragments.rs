@@ -43,8 +43,9 @@ pub(crate) fn split(scene: &Scene, particles: &Particles, cracks: &[Crack], numb
     }
 }
 
-/// The parts that the cracks cut the bodies of the scene into.
-fn at_rest(scene: &Scene, cracks: &[Crack]) -> Fragments {
+/// The parts that the cracks cut the bodies of the scene into; lines are known by their place among the rings of all
+/// bodies and among `cracks`.
+pub(crate) fn at_rest(scene: &Scene, cracks: &[Crack]) -> Fragments {
     let bodies = scene.bodies.iter().zip(0..);
     let rings: Vec<RestRing<'_>> = bodies
         .flat_map(|(body, number)| body.region.rings().map(move |points| RestRing { body: number, points }))

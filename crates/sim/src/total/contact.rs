@@ -30,8 +30,9 @@ use super::near::Near;
 use super::probes::Probes;
 use super::segment_normals::SegmentNormals;
 use super::ties::{Coupled, Ties};
+use super::touching::Touching;
 use crate::contact::friction::{borne_by_friction, left_of};
-use crate::contact::neighbours::TOGETHER;
+use crate::contact::neighbours::{MATCHED, TOGETHER};
 use crate::crack::Crack;
 use crate::crack::cracks::{Cracks, Stretch};
 use crate::saved::{self, Fits};
@@ -88,8 +89,6 @@ pub(super) struct Contacts {
     pressed: Vec<u32>,
     /// Coefficient of friction; none where faces pass through each other.
     friction: Option<f64>,
-    /// Faces that have come farther apart than this have parted [m].
-    farthest: f64,
     /// [m]
     cell_size: f64,
     /// Of each field, the points that act on it in a round; zero between rounds.
@@ -149,7 +148,6 @@ impl Contacts {
             points: all_points(lattice, cracks),
             pressed: Vec::new(),
             friction,
-            farthest: TOGETHER * lattice.grid.cell_size,
             cell_size: lattice.grid.cell_size,
             sharing: Vec::new(),
             pushed: Vec::new(),
@@ -262,13 +260,13 @@ impl Contacts {
     pub(super) fn resolve(
         &mut self,
         (mass, ties): (&[f64], &Ties),
-        (probes, cracks): (&Probes, &Cracks),
+        (probes, cracks, touching): (&Probes, &Cracks, &Touching),
         motion: &mut Motion,
         kick: f64,
         time_step: f64,
     ) {
         let Some(friction) = self.friction else { return };
-        let mut meetings = self.meetings(probes, cracks, motion, kick, time_step);
+        let mut meetings = self.meetings((probes, cracks, touching), motion, kick, time_step);
         let masses = self.masses(mass, ties, &meetings);
         for meeting in &mut meetings {
             meeting.impulse[1] = borne_by_friction(meeting.impulse[1], friction, meeting.impulse[0]);
@@ -283,13 +281,13 @@ impl Contacts {
     pub(super) fn resolve_again(
         &mut self,
         (mass, ties): (&[f64], &Ties),
-        (probes, cracks): (&Probes, &Cracks),
+        (probes, cracks, touching): (&Probes, &Cracks, &Touching),
         motion: &mut Motion,
         kick: f64,
         time_step: f64,
     ) {
         let Some(friction) = self.friction else { return };
-        let meetings = self.meetings(probes, cracks, motion, kick, time_step);
+        let meetings = self.meetings((probes, cracks, touching), motion, kick, time_step);
         let masses = self.masses(mass, ties, &meetings);
         self.relax(meetings, friction, masses, motion, kick);
     }
@@ -406,15 +404,14 @@ impl Contacts {
     /// of them.
     fn meetings(
         &mut self,
-        probes: &Probes,
-        cracks: &Cracks,
+        (probes, cracks, touching): (&Probes, &Cracks, &Touching),
         motion: &Motion,
         kick: f64,
         time_step: f64,
     ) -> Vec<Meeting> {
         self.normals.begin(probes);
         let facing: Vec<Facing> =
-            (0..self.points.len()).filter_map(|point| self.facing(point, probes, motion, kick)).collect();
+            (0..self.points.len()).filter_map(|point| self.facing(point, (probes, touching), motion, kick)).collect();
         // What is left of the gap may be used up in this step; faces that overlap stay as they are.
         let allowed = |f: &Facing, leeway: f64| -(f.gap.dot(&f.normal) + leeway).max(0.0) / time_step;
         let is_pressed = |f: &Facing, allowed: f64| f.impulse[0] > 0.0 || f.speed.dot(&f.normal) < allowed;
@@ -433,13 +430,19 @@ impl Contacts {
     }
 
     /// How faces lie at a point; none where they cannot meet.
-    fn facing(&mut self, index: usize, probes: &Probes, motion: &Motion, kick: f64) -> Option<Facing> {
+    fn facing(
+        &mut self,
+        index: usize,
+        (probes, touching): (&Probes, &Touching),
+        motion: &Motion,
+        kick: f64,
+    ) -> Option<Facing> {
         let point = &self.points[index];
         let gap = point.gap(motion);
-        // Faces that have come so far apart, sideways or not, touch others than they faced at rest. Of pieces that have
-        // turned the normal may point anywhere, and say of faces far apart that they overlap.
-        let farthest = self.farthest * point.total_weight();
-        if gap.norm_squared() > farthest * farthest {
+        // Faces that have come so far apart, sideways or not, touch others than they faced at rest: surfaces do. Of
+        // pieces that have turned the normal may point anywhere, and say of faces far apart that they overlap.
+        let in_cells = gap.norm() / (self.cell_size * point.total_weight());
+        if in_cells > MATCHED && (in_cells > TOGETHER || touching.are_apart(point.crack, point.segment)) {
             return None;
         }
         let speed = point.speed(motion);
@@ -774,8 +777,8 @@ mod tests {
                 }
             }
             let before = total.motion.velocity.clone();
-            let Total { lattice, ties, motion, probes, contacts, .. } = &mut total;
-            contacts.resolve((lattice.mass(), ties), (probes, &cracks), motion, 1e-4, 1e-4);
+            let Total { lattice, ties, motion, probes, contacts, touching, .. } = &mut total;
+            contacts.resolve((lattice.mass(), ties), (probes, &cracks, touching), motion, 1e-4, 1e-4);
             assert!(total.motion.velocity == before, "{way}");
         }
     }

@@ -200,12 +200,15 @@ impl Total {
         Look { lattice, motion, probes, ties, contacts, loads, half_step }
     }
 
+    /// Looks at which surfaces are near each other, and which pieces there are.
+    fn look_at_surfaces(&mut self, cracks: &Cracks, kick: f64, time_step: f64) {
+        let Self { scene, lattice, motion, probes, touching, .. } = self;
+        touching.look(&Moment { scene, lattice, probes, cracks, kick, time_step }, motion);
+    }
+
     /// Surfaces that touch, at the time `middle` [s] of a step. Whether any is near enough.
     fn touch(&mut self, cracks: &Cracks, middle: f64, kick: f64, time_step: f64) -> bool {
-        let Self { scene, lattice, motion, probes, touching, .. } = self;
-        let moment = Moment { scene, lattice, probes, cracks, kick, time_step };
-        touching.look(&moment, motion);
-        if !touching.is_near() {
+        if !self.touching.is_near() {
             return false;
         }
         // What a support holds gives way to nothing.
@@ -292,15 +295,16 @@ impl Solver for Total {
         // v += Δt f/m, then what changes velocities by impulses.
         let kick = motion.kick(&lattice.inverse_mass, scene.gravity, self.damping, time_step);
         ties.apply_drag(lattice.mass(), motion, cracks, kick);
+        self.look_at_surfaces(cracks, kick, time_step);
         if self.contacts.are_possible() {
-            let Self { lattice, ties, motion, probes, contacts, .. } = self;
-            contacts.resolve((lattice.mass(), ties), (probes, cracks), motion, kick, time_step);
+            let Self { lattice, ties, motion, probes, contacts, touching, .. } = self;
+            contacts.resolve((lattice.mass(), ties), (probes, cracks, touching), motion, kick, time_step);
         }
         let touches = self.touch(cracks, middle, kick, time_step);
         self.apply_boundaries(middle, time_step, kick);
         if self.contacts.are_possible() && !self.colliders.is_empty() {
-            let Self { lattice, ties, motion, probes, contacts, .. } = self;
-            contacts.resolve_again((lattice.mass(), ties), (probes, cracks), motion, kick, time_step);
+            let Self { lattice, ties, motion, probes, contacts, touching, .. } = self;
+            contacts.resolve_again((lattice.mass(), ties), (probes, cracks, touching), motion, kick, time_step);
         }
         if touches && !self.colliders.is_empty() {
             self.touching.resolve_again(&mut self.motion);

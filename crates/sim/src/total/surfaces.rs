@@ -3,10 +3,12 @@
 use super::near::Near;
 use super::probe::Probe;
 use super::probes::Probes;
+use crate::contact::neighbours::{MOST_MOVED, MOST_MOVED_OF_PIECES};
 use crate::contact::surface::Surface;
 use crate::crack::cracks::{Cracks, TipId};
+use crate::crack::fragments;
 use fissure_plane::{distance_to_segment, orientation};
-use fissure_scene::{CrackEnd, End, Scene};
+use fissure_scene::{BoundaryEdge, CrackEnd, End, Line, Scene};
 
 /// Two places nearer to each other than this, in cells, are one.
 const SAME: f64 = 1e-9;
@@ -33,6 +35,10 @@ pub(super) struct Surfaces {
     carriers: Vec<Carrier>,
     /// Numbers of the vertices of each face of each crack, point by point.
     faces: Vec<[Vec<u32>; 2]>,
+    /// A vertex of each ring that no crack ends on.
+    whole_rings: Vec<Option<u32>>,
+    /// Whether a body has come to pieces.
+    are_pieces: bool,
 }
 
 impl Carrier {
@@ -54,7 +60,48 @@ impl Surfaces {
         for id in cracks.ids() {
             all.join_at_junction(scene, cracks, id, &mut joined);
         }
+        all.number_pieces(scene, cracks);
         all
+    }
+
+    /// Tells each vertex which piece it belongs to: those that bound the same fragment are of one.
+    fn number_pieces(&mut self, scene: &Scene, cracks: &Cracks) {
+        let fragments = fragments::at_rest(scene, cracks);
+        // Where a crack ends on a point of another one, what was the vertex there belongs to two fragments.
+        let has_edge = |&v: &u32| self.surface.has_edge(v);
+        let mut joined = Vec::new();
+        for fragment in fragments.list() {
+            let mut own = fragment.boundaries.iter().flatten().flat_map(|edge| self.vertices_of(edge)).filter(has_edge);
+            if let Some(first) = own.next() {
+                joined.extend(own.map(|other| [first, other]));
+            }
+        }
+        self.surface.number_pieces(&joined);
+        self.are_pieces = fragments.list().len() > scene.bodies.len();
+    }
+
+    /// Vertices that belong to the fragment of an edge, whatever else ends on that edge: its ends where it is of a
+    /// face; of a ring, those that are not joined to faces.
+    fn vertices_of(&self, edge: &BoundaryEdge) -> impl Iterator<Item = u32> {
+        let (of_ring, of_face) = match edge.line {
+            Line::Ring(ring) => (self.whole_rings.get(ring).copied().flatten(), None),
+            Line::Above(crack) => (None, self.faces.get(crack).map(|faces| &faces[0])),
+            Line::Below(crack) => (None, self.faces.get(crack).map(|faces| &faces[1])),
+        };
+        let is_end = [edge.span[0] == 0.0, edge.span[1] == 1.0];
+        let points = edge.points.into_iter().zip(is_end).filter(|(_, is_end)| *is_end).map(|(point, _)| point);
+        of_ring.into_iter().chain(points.filter_map(move |point| of_face?.get(point).copied()))
+    }
+
+    /// Whether the two sides of a segment of a crack belong to different pieces.
+    pub(super) fn are_apart(&self, crack: usize, segment: usize) -> bool {
+        let Some(faces) = self.faces.get(crack) else { return false };
+        let of_face = |face: usize| {
+            let ends = [segment, segment + 1].map(|point| faces[face].get(point).copied());
+            ends.into_iter().flatten().filter(|&v| self.surface.has_edge(v))
+        };
+        let piece = |v: u32| self.surface.vertex(v).piece;
+        self.are_pieces && of_face(0).all(|above| of_face(1).all(|below| piece(above) != piece(below)))
     }
 
     /// Gives the points of faces the numbers that they have now.
@@ -66,6 +113,11 @@ impl Surfaces {
                 }
             }
         }
+    }
+
+    /// By how much surfaces may come nearer to each other before neighbours are looked for anew, in cells.
+    pub(super) fn most_moved(&self) -> f64 {
+        if self.are_pieces { MOST_MOVED_OF_PIECES } else { MOST_MOVED }
     }
 
     /// The probe that carries a vertex.
@@ -99,6 +151,8 @@ impl Surfaces {
                     self.push(scene, probe, carrier, probe.nudged != probe.rest)
                 })
                 .collect();
+            let is_whole = vertices.iter().all(|probe| probe.nudged == probe.rest);
+            self.whole_rings.push(numbers.first().copied().filter(|_| is_whole));
             for k in 0..numbers.len() {
                 let next = (k + 1) % numbers.len();
                 // Between the two vertices of a mouth there is none: the faces go on from there.
@@ -217,10 +271,16 @@ mod tests {
     /// A square of four metres in cells of 0.1 m, cut by cracks that end on the first one.
     fn cut_square(cracks: &[&[[f64; 2]]]) -> (Scene, Total, Cracks) {
         let mut scene = test_scenes::free_body(test_scenes::rectangle([0.0, 0.0], [4.0, 4.0]), 0.1);
-        scene.solver.formulation = fissure_scene::Formulation::Total;
         cracks.iter().for_each(|points| test_scenes::add_crack(&mut scene, points));
+        let branches: Vec<usize> = (1..cracks.len()).collect();
+        cut(scene, &branches)
+    }
+
+    /// The body of a scene cut by its cracks, of which some begin on the first one.
+    fn cut(mut scene: Scene, branches: &[usize]) -> (Scene, Total, Cracks) {
+        scene.solver.formulation = fissure_scene::Formulation::Total;
         let mut cracks = Cracks::of_scene(&scene);
-        for branch in 1..cracks.len() {
+        for &branch in branches {
             cracks.set_end(TipId::new(branch, End::Start), CrackEnd::Junction { crack: 0 });
         }
         let total = Total::new(&scene, Arc::new(Particles::fill(&scene).unwrap()), &cracks).unwrap();
@@ -257,6 +317,53 @@ mod tests {
             [above * 1.03, above * (1.31 + 0.9), below * (1.33 + 2.2), below * (2.67 + 1.8), above * (2.66 + 2.1)];
         assert_eq!(areas.len(), expected.len(), "{areas:?}");
         assert!(areas.iter().zip(expected).all(|(area, expected)| (area - expected).abs() < 1e-9), "{areas:?}");
+    }
+
+    /// Truth: the drawing. A crack across a square, one from that to its upper edge, one within and one from the edge;
+    /// a hole below. There are three pieces: the hole and what ends within them are of the piece around them, and faces
+    /// are apart where the square is in two.
+    #[test]
+    fn pieces_are_what_cracks_cut_off() {
+        let mut scene = test_scenes::free_body(test_scenes::rectangle([0.0, 0.0], [4.0, 4.0]), 0.1);
+        let hole = [[1.0, 0.5], [1.0, 1.0], [1.5, 1.0], [1.5, 0.5]];
+        scene.bodies[0].region.holes.push(hole.map(fissure_plane::Point::from).to_vec());
+        let lines: [&[[f64; 2]]; 4] = [
+            &[[0.0, 2.03], [2.01, 2.03], [4.0, 2.03]],
+            &[[2.01, 2.03], [2.2, 4.0]],
+            &[[2.5, 0.6], [2.9, 0.9], [3.3, 1.3]],
+            &[[1.03, 4.0], [1.2, 3.0]],
+        ];
+        lines.iter().for_each(|points| test_scenes::add_crack(&mut scene, points));
+        let (scene, total, cracks) = cut(scene, &[1]);
+        let surfaces = Surfaces::new(&scene, &total.probes, &cracks);
+        let surface = &surfaces.surface;
+        let vertices: Vec<u32> = (0..surface.len() as u32).filter(|&v| surface.has_edge(v)).collect();
+        // Beside lines, the side tells; of vertices on them the other vertices of their edge.
+        let part = |v: u32| {
+            let rest = surface.vertex(v).rest;
+            if rest.y < 2.02 {
+                Some(0)
+            } else if rest.y < 2.04 {
+                None
+            } else {
+                Some(if rest.x < 2.0 { 1 } else { 2 })
+            }
+        };
+        let mut pieces = [Vec::new(), Vec::new(), Vec::new()];
+        for &v in &vertices {
+            // The crack between the two upper parts has vertices of both.
+            let is_between = (surface.vertex(v).rest.x - 2.1).abs() < 0.11;
+            if let Some(part) = part(v).filter(|&part| part == 0 || !is_between) {
+                pieces[part].push(surface.vertex(v).piece);
+            }
+        }
+        pieces.iter_mut().for_each(Vec::dedup);
+        assert!(pieces.iter().all(|of_part| of_part.len() == 1), "{pieces:?}");
+        assert!(pieces[0] != pieces[1] && pieces[1] != pieces[2] && pieces[0] != pieces[2], "{pieces:?}");
+        let apart =
+            |crack: usize| (0..lines[crack].len() - 1).map(|k| surfaces.are_apart(crack, k)).collect::<Vec<_>>();
+        assert_eq!([apart(0), apart(1)], [vec![true, true], vec![true]]);
+        assert_eq!([apart(2), apart(3)], [vec![false, false], vec![false]]);
     }
 
     /// Truth: the drawing. At whatever angle a crack ends on another one, both its faces end on its own side of that.

@@ -703,8 +703,8 @@ proptest! {
             (0..2).for_each(|axis| total.motion.velocity[axis][field] = speeds[(2 * field + axis) % speeds.len()]);
         }
         let before = total.kinetic_energy();
-        let Total { contacts, lattice, ties, probes, motion, .. } = &mut total;
-        contacts.resolve((lattice.mass(), ties), (probes, &cracks), motion, 1e-9, 1e-9);
+        let Total { contacts, lattice, ties, probes, motion, touching, .. } = &mut total;
+        contacts.resolve((lattice.mass(), ties), (probes, &cracks, touching), motion, 1e-9, 1e-9);
         let after = total.kinetic_energy();
         prop_assert!(after <= before * (1.0 + 1e-12), "{before} {after}");
     }

@@ -7,8 +7,8 @@ use super::probes::Probes;
 use super::supports::HeldFields;
 use super::surfaces::{Surfaces, VertexKey, can_meet};
 use crate::contact::impulses::{Impulse, Meetings, Share, allowed};
-use crate::contact::meeting::{Meeting, meeting};
-use crate::contact::neighbours::Neighbours;
+use crate::contact::meeting::{Meeting, meeting, were_within};
+use crate::contact::neighbours::{Neighbours, TOGETHER};
 use crate::crack::cracks::Cracks;
 use crate::saved::{self, Fits};
 use fissure_plane::{Point, Vector};
@@ -18,10 +18,6 @@ use serde::{Deserialize, Serialize};
 /// Steps between two looks at how far surfaces have moved: a wave takes more than twice as many for the reach of a look
 /// at material that moves at a tenth of its speed.
 const STEPS_BETWEEN_LOOKS: u32 = 8;
-
-/// Surfaces are looked at anew when they may have come nearer to each other by this, in cells: half of what
-/// neighbours are looked for in.
-const MOST_MOVED: f64 = 0.8;
 
 /// A gap that is wider than this, in cells, and does not close within a step needs no impulse.
 const SLIM: f64 = 0.1;
@@ -157,8 +153,12 @@ impl Touching {
         let way = speed * moment.time_step * f64::from(STEPS_BETWEEN_LOOKS);
         self.moved += way;
         self.steps_since_look = 0;
-        if self.moved + way >= MOST_MOVED * self.cell_size {
+        if self.moved + way >= surfaces.most_moved() * self.cell_size {
             self.find_neighbours(moment, motion);
+            self.moved = 0.0;
+        }
+        if let Some(surfaces) = &self.surfaces {
+            self.neighbours.choose(&surfaces.surface, self.moved + way, self.cell_size);
         }
     }
 
@@ -170,8 +170,12 @@ impl Touching {
         let Some(surfaces) = &self.surfaces else { return };
         let place = |v: u32| surfaces.probe(v, moment.probes).moved(&motion.displacement);
         self.place = (0..surfaces.surface.len() as u32).map(place).collect();
-        self.neighbours = Neighbours::find(&surfaces.surface, &self.place, self.cell_size, self.cracks_touch);
-        self.moved = 0.0;
+        self.neighbours = Neighbours::find(
+            &surfaces.surface,
+            &self.place,
+            (self.cell_size, surfaces.most_moved()),
+            self.cracks_touch,
+        );
     }
 
     /// Lays the surfaces as they are now.
@@ -185,9 +189,14 @@ impl Touching {
         (self.is_stale, self.is_void) = (false, false);
     }
 
+    /// Whether the two sides of a segment of a crack belonged to different pieces when surfaces were laid.
+    pub(super) fn are_apart(&self, crack: u32, segment: u32) -> bool {
+        self.surfaces.as_ref().is_some_and(|surfaces| surfaces.are_apart(crack as usize, segment as usize))
+    }
+
     /// Whether anything is near enough to touch.
     pub(super) fn is_near(&self) -> bool {
-        !self.neighbours.is_empty()
+        self.neighbours.are_due()
     }
 
     /// Gives velocities the impulses of all that touches. `held`: fields that supports hold.
@@ -210,12 +219,22 @@ impl Touching {
                 continue;
             }
             shares_of(&mut shares, surfaces, vertex, &found, moment, held);
-            let [own, other] = [vertex, found.ends[0]].map(|v| surfaces.surface.vertex(v).material as usize);
-            let friction = moment.scene.contact.friction_between(own, other);
+            let friction = self.friction(moment.scene, surfaces, vertex, &found);
             self.meetings.push(found.normal, least, friction, &mut shares, before);
         }
         self.meetings.begin(&mut motion.velocity);
         self.meetings.solve(&mut motion.velocity);
+    }
+
+    /// Coulomb friction in a meeting: that of crack faces where pieces have slid along the crack between them, by no
+    /// more than faces do that are no pieces.
+    fn friction(&self, scene: &Scene, surfaces: &Surfaces, vertex: u32, found: &Meeting) -> f64 {
+        let Meeting { ends, along, .. } = *found;
+        if were_within(&surfaces.surface, vertex, ends, along, TOGETHER * self.cell_size) {
+            return scene.solver.crack_friction;
+        }
+        let [own, other] = [vertex, ends[0]].map(|v| surfaces.surface.vertex(v).material as usize);
+        scene.contact.friction_between(own, other)
     }
 
     /// Goes on with the impulses of [`Touching::resolve`] after velocities have changed.

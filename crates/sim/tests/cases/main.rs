@@ -6,6 +6,7 @@ mod contour;
 mod contract;
 mod directing;
 mod edges;
+mod pieces;
 mod plane;
 mod pressure;
 mod price;
