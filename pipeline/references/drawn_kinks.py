@@ -32,8 +32,8 @@ def distance_to(points, a, b):
     return np.hypot(*(points - a - t[:, None] * (b - a)).T)
 
 
-def mesh(line, smallest, fineness):
-    """Nodes and triangles; along the line points so close that its pieces are edges."""
+def mesh(line, smallest, fineness, height=1):
+    """Nodes and triangles of a plate of width 1; along the line points so close that its pieces are edges."""
     tip, kink = line[-1], line[-2]
 
     def size(p):
@@ -55,7 +55,7 @@ def mesh(line, smallest, fineness):
         on_line.extend(a + (b - a) * (s / length) for s in steps[1:])
     on_line = np.array(on_line)
 
-    cells = [(0.0, 0.0, 1.0)]
+    cells = [(0.0, float(row), 1.0) for row in range(height)]
     inside = []
     while cells:
         nodes = np.array([(x + s / 2, y + s / 2) for x, y, s in cells])
@@ -71,9 +71,10 @@ def mesh(line, smallest, fineness):
     away = np.min([distance_to(inside, a, b) for a, b in zip(line, line[1:])], axis=0)
     inside = inside[away > 0.62 * size(inside)]
     edge = np.linspace(0, 1, round(25 / fineness) + 1)
-    border = [(t, 0.0) for t in edge] + [(t, 1.0) for t in edge] + [(1.0, t) for t in edge[1:-1]]
-    border += [(0.0, t) for t in edge[1:-1] if abs(t - line[0][1]) > 0.02 * fineness]
-    near_edge = np.minimum(inside, 1 - inside).min(axis=1) > 0.012 * fineness
+    side = np.linspace(0, height, round(25 * height / fineness) + 1)[1:-1]
+    border = [(t, 0.0) for t in edge] + [(t, float(height)) for t in edge] + [(1.0, t) for t in side]
+    border += [(0.0, t) for t in side if abs(t - line[0][1]) > 0.02 * fineness]
+    near_edge = np.minimum(inside, [1, height] - inside).min(axis=1) > 0.012 * fineness
     nodes = np.concatenate([on_line, np.array(border), inside[near_edge]])
     triangles = Delaunay(nodes).simplices
     corner = nodes[triangles]
@@ -148,7 +149,7 @@ def williams(mode, z):
 
 
 def factors(degrees, branch, fineness=1.0):
-    """K_I and K_II over sqrt(pi a), a = 1/3."""
+    """K_I and K_II over sqrt(pi a), a = 1/3, of a crack with a branch."""
     angle = np.radians(degrees)
     kink = np.array([PARENT, 0.5])
     line = [np.array([0.0, 0.5]), kink]
@@ -157,7 +158,13 @@ def factors(degrees, branch, fineness=1.0):
     else:
         angle = 0.0
     radius = branch if branch > 0 else PARENT / 2
-    nodes, triangles, count = mesh(line, radius, fineness)
+    return intensities(line, angle, radius, fineness) / np.sqrt(np.pi * PARENT)
+
+
+def intensities(line, angle, radius, fineness, height=1, is_half=False):
+    """K_I and K_II under tension 1 of a line whose last piece, longer than `radius`, is turned by `angle`. `is_half`: the plate
+    goes on beyond its right edge as its mirror image."""
+    nodes, triangles, count = mesh(line, radius, fineness, height)
     nodes, triangles = split(nodes, triangles, count)
     middles, six, places = {}, [], list(nodes)
     for tri in triangles:
@@ -192,15 +199,15 @@ def factors(degrees, branch, fineness=1.0):
     matrix = coo_matrix((local.ravel(), (rows, columns)), (n, n)).tocsr()
     force = np.zeros(n)
     for a, b in middles:
-        for height, pull in ((0.0, -1.0), (1.0, 1.0)):
-            if nodes[a][1] == height and nodes[b][1] == height:
+        for level, pull in ((0.0, -1.0), (float(height), 1.0)):
+            if nodes[a][1] == level and nodes[b][1] == level:
                 length = abs(nodes[a][0] - nodes[b][0])
                 for node, part in ((a, 1 / 6), (b, 1 / 6), (middles[(a, b)], 4 / 6)):
                     force[2 * node + 1] += pull * part * length
     # Far from everything, at the right edge: as a rigid body it is held there.
     right = np.flatnonzero(places[:, 0] == 1.0)
     low, high = right[np.argmin(places[right, 1])], right[np.argmax(places[right, 1])]
-    held = [2 * low, 2 * low + 1, 2 * high]
+    held = [*(2 * right), 2 * low + 1] if is_half else [2 * low, 2 * low + 1, 2 * high]
     free = np.setdiff1d(np.arange(n), held)
     u = np.zeros(n)
     u[free] = spsolve(matrix[free][:, free].tocsc(), force[free])
@@ -227,7 +234,7 @@ def factors(degrees, branch, fineness=1.0):
             mutual = np.einsum("eij,eij->e", auxiliary, strain)
             total = np.einsum("ej,ej->e", flux, q) - mutual * q[:, 0]
             found[mode] += MODULUS / 2 * (total * det[ring] * weight).sum()
-    return np.array(found) / np.sqrt(np.pi * PARENT)
+    return np.array(found)
 
 
 if __name__ == "__main__":
