@@ -3,7 +3,6 @@
 use crate::edges::crack_of;
 use fissure_plane::{bounds, distance_to_segment, orientation};
 use fissure_scene::{BoundaryEdge, BranchKind, CrackFrame, Fragments, Frame, Guide, Line, Point, Scene, Vector};
-use rustc_hash::FxHashMap;
 use std::borrow::Cow;
 
 /// Standard deviation of the weights with which places along a crack are averaged, in cells. A wave of 3.3 cells keeps
@@ -82,7 +81,7 @@ impl<'a> SmoothCracks<'a> {
                     vec![Vector::zeros(); rest.len()]
                 };
             }
-            changed = hold_crossings(&frame.cracks, &smooth.offsets, scene.cell_size, &mut is_fixed);
+            changed = hold_crossings(&frame.cracks, &smooth.offsets, &mut is_fixed);
             if changed.is_empty() {
                 break;
             }
@@ -96,37 +95,56 @@ impl<'a> SmoothCracks<'a> {
     }
 }
 
+/// A segment of a smooth path.
+struct PlacedSegment {
+    /// Its crack and its first point.
+    segment: (usize, usize),
+    ends: [Point; 2],
+    low: Point,
+    high: Point,
+    /// Whether it lies elsewhere than at rest.
+    moves: bool,
+}
+
+impl PlacedSegment {
+    fn new((crack, k): (usize, usize), rest: &[Point], offsets: &[Vector]) -> Self {
+        let ends = [k, k + 1].map(|k| rest[k] + offsets[k]);
+        let (low, high) = bounds(&ends);
+        let moves = [k, k + 1].iter().any(|&k| offsets[k] != Vector::zeros());
+        Self { segment: (crack, k), ends, low, high, moves }
+    }
+
+    /// Whether two go through each other.
+    fn crosses(&self, other: &Self) -> bool {
+        let ([a, b], [c, d]) = (self.ends, other.ends);
+        self.low.y <= other.high.y
+            && other.low.y <= self.high.y
+            && orientation(a, b, c) * orientation(a, b, d) < 0.0
+            && orientation(c, d, a) * orientation(c, d, b) < 0.0
+    }
+}
+
 /// Holds the points of cracks whose smooth paths cross where their own do not. Returns the cracks that are held more
 /// than before.
-fn hold_crossings(
-    cracks: &[CrackFrame],
-    offsets: &[Vec<Vector>],
-    cell_size: f64,
-    is_fixed: &mut [Vec<bool>],
-) -> Vec<usize> {
-    let ends = |(crack, k): (usize, usize)| [k, k + 1].map(|k| cracks[crack].rest[k] + offsets[crack][k]);
-    let segments = || (0..cracks.len()).flat_map(|i| (1..cracks[i].rest.len()).map(move |k| (i, k - 1)));
-    let bins = |segment: (usize, usize)| {
-        let (low, high) = bounds(&ends(segment));
-        let [low, high] = [low, high].map(|p| [p.x, p.y].map(|x| (x / cell_size).floor() as i32));
-        (low[0]..=high[0]).flat_map(move |column| (low[1]..=high[1]).map(move |row| [column, row]))
-    };
-    let mut binned = FxHashMap::<[i32; 2], Vec<(usize, usize)>>::default();
-    segments().for_each(|segment| bins(segment).for_each(|bin| binned.entry(bin).or_default().push(segment)));
+fn hold_crossings(cracks: &[CrackFrame], offsets: &[Vec<Vector>], is_fixed: &mut [Vec<bool>]) -> Vec<usize> {
+    // Along x: those that reach as far as where the next one begins are compared with it.
+    let mut placed: Vec<PlacedSegment> = (0..cracks.len())
+        .flat_map(|crack| (1..cracks[crack].rest.len()).map(move |k| (crack, k - 1)))
+        .map(|(crack, k)| PlacedSegment::new((crack, k), &cracks[crack].rest, &offsets[crack]))
+        .collect();
+    placed.sort_by(|a, b| a.low.x.total_cmp(&b.low.x));
     let mut held = Vec::new();
-    for one in segments().filter(|&(i, k)| offsets[i][k] != Vector::zeros() || offsets[i][k + 1] != Vector::zeros()) {
-        let [a, b] = ends(one);
-        let others = bins(one).flat_map(|bin| binned.get(&bin).into_iter().flatten().copied());
-        for other in others.filter(|other| cracks[other.0].body == cracks[one.0].body) {
-            let beside = other.0 == one.0 && other.1.abs_diff(one.1) <= 1;
-            let [c, d] = ends(other);
-            let crosses = || {
-                orientation(a, b, c) * orientation(a, b, d) < 0.0 && orientation(c, d, a) * orientation(c, d, b) < 0.0
-            };
-            if !beside && crosses() {
-                held.extend([one, other]);
+    let mut reaching: Vec<&PlacedSegment> = Vec::new();
+    for one in &placed {
+        reaching.retain(|other| other.high.x >= one.low.x);
+        for other in reaching.iter().filter(|other| one.moves || other.moves) {
+            let ((i, k), (j, l)) = (one.segment, other.segment);
+            let beside = i == j && k.abs_diff(l) <= 1;
+            if cracks[i].body == cracks[j].body && !beside && one.crosses(other) {
+                held.extend([one.segment, other.segment]);
             }
         }
+        reaching.push(one);
     }
     let mut changed = Vec::new();
     for (i, k) in held {
