@@ -117,8 +117,9 @@ impl PlacedSegment {
     /// Whether two go through each other.
     fn crosses(&self, other: &Self) -> bool {
         let ([a, b], [c, d]) = (self.ends, other.ends);
-        self.low.y <= other.high.y
-            && other.low.y <= self.high.y
+        let overlap = |k: usize| self.low[k] <= other.high[k] && other.low[k] <= self.high[k];
+        overlap(0)
+            && overlap(1)
             && orientation(a, b, c) * orientation(a, b, d) < 0.0
             && orientation(c, d, a) * orientation(c, d, b) < 0.0
     }
@@ -127,16 +128,19 @@ impl PlacedSegment {
 /// Holds the points of cracks whose smooth paths cross where their own do not. Returns the cracks that are held more
 /// than before.
 fn hold_crossings(cracks: &[CrackFrame], offsets: &[Vec<Vector>], is_fixed: &mut [Vec<bool>]) -> Vec<usize> {
-    // Along x: those that reach as far as where the next one begins are compared with it.
+    // Along the longer side of it all: those that reach as far as where the next one begins are compared with it.
     let mut placed: Vec<PlacedSegment> = (0..cracks.len())
         .flat_map(|crack| (1..cracks[crack].rest.len()).map(move |k| (crack, k - 1)))
         .map(|(crack, k)| PlacedSegment::new((crack, k), &cracks[crack].rest, &offsets[crack]))
         .collect();
-    placed.sort_by(|a, b| a.low.x.total_cmp(&b.low.x));
+    let corners: Vec<Point> = placed.iter().flat_map(|segment| [segment.low, segment.high]).collect();
+    let (low, high) = bounds(&corners);
+    let axis = usize::from(high.y - low.y > high.x - low.x);
+    placed.sort_by(|a, b| a.low[axis].total_cmp(&b.low[axis]));
     let mut held = Vec::new();
     let mut reaching: Vec<&PlacedSegment> = Vec::new();
     for one in &placed {
-        reaching.retain(|other| other.high.x >= one.low.x);
+        reaching.retain(|other| other.high[axis] >= one.low[axis]);
         for other in reaching.iter().filter(|other| one.moves || other.moves) {
             let ((i, k), (j, l)) = (one.segment, other.segment);
             let beside = i == j && k.abs_diff(l) <= 1;
