@@ -28,15 +28,15 @@ pub(super) struct Cells {
 }
 
 impl Cells {
-    /// Cells so large that the middles of all edges within `reach` [m] of a place are in its cell or in one beside it;
-    /// vertices are at `place` [m].
-    pub(super) fn new(surface: &Surface, place: &[Point], reach: f64) -> Self {
+    /// Cells so large that the middles of all of `edges` within `reach` [m] of a place are in its cell or in one beside
+    /// it; vertices are at `place` [m].
+    pub(super) fn new(surface: &Surface, place: &[Point], reach: f64, edges: impl Iterator<Item = u32>) -> Self {
         let placed = |edge: u32| {
             let (from, to) = (place[edge as usize], place[surface.next(edge)? as usize]);
             let farthest = (reach + 0.5 * (to - from).norm()) * (1.0 + ROUND_OFF);
             Some((farthest, Placed { edge, middle: from + (to - from) * 0.5, reach_squared: farthest * farthest }))
         };
-        let all: Vec<(f64, Placed)> = (0..surface.len() as u32).filter_map(placed).collect();
+        let all: Vec<(f64, Placed)> = edges.filter_map(placed).collect();
         let size = all.iter().map(|(farthest, _)| *farthest).fold(reach, f64::max);
         let mut edges: Vec<(Key, Placed)> = all.iter().map(|&(_, placed)| (key(placed.middle, size), placed)).collect();
         edges.sort_unstable_by_key(|&(key, placed)| (key, placed.edge));

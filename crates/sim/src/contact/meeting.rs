@@ -135,7 +135,7 @@ fn around_corner(away: Vector, corner: Vector, cell_size: f64) -> Vector {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::neighbours::{MOST_MOVED, Neighbours};
+    use super::super::neighbours::{MOST_MOVED, Neighbours, Scenery};
     use super::*;
 
     /// A ring of points as a body of its own.
@@ -150,8 +150,11 @@ mod tests {
 
     /// What may touch before the next look.
     fn due(surface: &Surface, place: &[Point], cell_size: f64) -> Neighbours {
-        let mut found = Neighbours::find(surface, place, (cell_size, MOST_MOVED), true);
-        found.choose(surface, MOST_MOVED * cell_size, cell_size);
+        let scenery = Scenery { surface, place, cell_size, most_moved: MOST_MOVED, cracks_touch: true };
+        let mut found = Neighbours::find(&scenery);
+        // Everything may have come as near as it may.
+        let apart = |v: u32| Vector::new(f64::from(v % 2) * MOST_MOVED * cell_size, 0.0);
+        found.choose(&scenery, &(0..surface.len() as u32).map(apart).collect::<Vec<_>>(), 1.0);
         found
     }
 
@@ -266,11 +269,11 @@ mod tests {
                 [0.0, 3.0],
             ])
         };
-        assert!(divided(&[[0.0, 0.0], [4.0, 0.0], [4.0, 0.4]]).is_empty());
-        assert!(divided(&[[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [1.0, 1.0], [1.0, 3.0], [0.0, 3.0]]).is_empty());
+        assert!(!divided(&[[0.0, 0.0], [4.0, 0.0], [4.0, 0.4]]).are_due());
+        assert!(!divided(&[[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [1.0, 1.0], [1.0, 3.0], [0.0, 3.0]]).are_due());
         let notch = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [2.6, 3.0], [2.0, 2.0], [1.4, 3.0], [0.0, 3.0]];
-        assert!(divided(&notch).is_empty());
-        assert!(!slot(0.1, 2.0).is_empty());
-        assert!(slot(1.0, 2.0).is_empty());
+        assert!(!divided(&notch).are_due());
+        assert!(slot(0.1, 2.0).are_due());
+        assert!(!slot(1.0, 2.0).are_due());
     }
 }

@@ -6,6 +6,7 @@
 //! opposite, so that momentum is kept to round-off, and where the surfaces are drawn, not where nodes are.
 //!
 //! - [`neighbours`]: which vertices can come to which edges before the next look.
+//! - [`nearing`]: how much nearer to each other these may have come.
 //! - [`meeting`]: the nearest edge of a vertex, the gap and the normal.
 //! - [`impulses`]: impulses of all meetings together.
 //! - [`friction`]: Coulomb's cone.
@@ -14,5 +15,6 @@ mod cells;
 pub(crate) mod friction;
 pub(crate) mod impulses;
 pub(crate) mod meeting;
+mod nearing;
 pub(crate) mod neighbours;
 pub(crate) mod surface;

@@ -2,6 +2,7 @@
 
 use super::cells::{Cells, Surroundings};
 use super::meeting::WIDEST;
+use super::nearing::Nearing;
 use super::surface::Surface;
 use fissure_plane::{Point, Vector, distance_to_segment, nearest_on_segment};
 
@@ -25,6 +26,10 @@ pub(crate) const MOST_MOVED: f64 = 0.8;
 
 /// The same where a body has come to pieces: what may slide by [`MATCHED`] until then has slid by the rest at a look.
 pub(crate) const MOST_MOVED_OF_PIECES: f64 = 0.3;
+
+/// When some vertices have to be looked at, so are those that will soon, by this part of what they may come nearer: a
+/// look takes time for all.
+const SOON: f64 = 0.5;
 
 /// A gap at rest whose two sides are so many times as long as it is wide can close.
 const NARROW: f64 = 4.0;
@@ -59,28 +64,68 @@ pub(crate) struct Neighbours {
     due: Vec<u32>,
     /// All vertices whose places are asked for, rising.
     asked: Vec<u32>,
+    nearing: Nearing,
+}
+
+/// Surfaces as they are, and how they are looked at.
+pub(crate) struct Scenery<'a> {
+    pub(crate) surface: &'a Surface,
+    /// Where its vertices are [m].
+    pub(crate) place: &'a [Point],
+    pub(crate) cell_size: f64,
+    /// By how much what is found may come nearer before it is looked for anew, in cells.
+    pub(crate) most_moved: f64,
+    /// Whether crack faces touch.
+    pub(crate) cracks_touch: bool,
 }
 
 impl Neighbours {
-    /// Finds all, for vertices of `surface` that are at `place` [m] now; `cell_size` [m]. `most_moved`: by how much
-    /// they may come nearer to each other before the next look, in cells. `cracks_touch`: whether crack faces do.
-    pub(crate) fn find(
-        surface: &Surface,
-        place: &[Point],
-        (cell_size, most_moved): (f64, f64),
-        cracks_touch: bool,
-    ) -> Self {
+    /// Finds all.
+    pub(crate) fn find(scenery: &Scenery<'_>) -> Self {
+        let mut found = Self::default();
+        found.nearing.lay_bins(scenery.surface, scenery.place, scenery.reach());
+        found.look(scenery, &vec![true; scenery.surface.len()]);
+        found
+    }
+
+    /// Finds those of the vertices anew to which something else may come before the next look.
+    pub(crate) fn find_again(&mut self, scenery: &Scenery<'_>) {
+        if self.nearing.are_far_near() {
+            self.nearing.lay_bins(scenery.surface, scenery.place, scenery.reach());
+        }
+        let soon: Vec<bool> = (0..scenery.surface.len() as u32)
+            .map(|v| self.nearing.by_next_look(v) >= SOON * scenery.most_moved * scenery.cell_size)
+            .collect();
+        self.look(scenery, &soon);
+    }
+
+    /// Looks at the vertices that are `wanted`; of others what is known stays.
+    fn look(&mut self, scenery: &Scenery<'_>, wanted: &[bool]) {
+        let Scenery { surface, place, .. } = *scenery;
         let rest = surface.places_at_rest();
-        let search = Search { surface, place, rest: &rest, cell_size, most_moved, cracks_touch };
-        let cells = Cells::new(surface, place, search.reach());
+        let search = Search::new(scenery, &rest);
+        let near_wanted = self.nearing.edges_around(wanted);
+        let edges = (0..surface.len() as u32).filter(|&edge| near_wanted[edge as usize]);
+        let cells = Cells::new(surface, place, search.reach(), edges.clone());
         let slides = [true, false].map(|are_one| search.least_slide(are_one));
         let mut around = Surroundings::new(&cells, surface, place, slides);
-        let edge_normals: Vec<Option<Vector>> =
-            (0..surface.len() as u32).map(|edge| surface.edge_normal(edge, place)).collect();
-        let mut found = Self { first: vec![0], ..Self::default() };
-        let touches = (most_moved + TOUCHES) * cell_size;
+        let mut edge_normals: Vec<Option<Vector>> = vec![None; surface.len()];
+        edges.for_each(|edge| edge_normals[edge as usize] = surface.edge_normal(edge, place));
+        let before = std::mem::take(self);
+        *self = Self { first: vec![0], nearing: before.nearing, ..Self::default() };
+        let mut known = before.comers.iter().zip(before.first.windows(2)).peekable();
+        let touches = (scenery.most_moved + TOUCHES) * scenery.cell_size;
         let mut near = Vec::new();
         for vertex in 0..surface.len() as u32 {
+            let of_before = known.next_if(|(comer, _)| comer.vertex == vertex);
+            if !wanted[vertex as usize] {
+                if let Some((comer, range)) = of_before {
+                    self.edges.extend(&before.edges[range[0] as usize..range[1] as usize]);
+                    self.end(*comer);
+                }
+                continue;
+            }
+            self.nearing.restart(vertex);
             let x = place[vertex as usize];
             if around.are_calm_at(x) {
                 continue;
@@ -90,29 +135,42 @@ impl Neighbours {
             near.clear();
             near.extend(around.edges(x).filter(faces).filter(|&edge| search.is_near(vertex, edge)));
             near.sort_unstable();
-            let first = found.edges.len();
-            found.edges.extend(near.iter().map(|&edge| Neighbour { edge, can_touch: search.can_touch(vertex, edge) }));
+            let first = self.edges.len();
+            self.edges.extend(near.iter().map(|&edge| Neighbour { edge, can_touch: search.can_touch(vertex, edge) }));
             let comes = |near: &&Neighbour| near.can_touch && !search.stays(vertex, near.edge);
-            let coming = found.edges[first..].iter().filter(comes);
+            let coming = self.edges[first..].iter().filter(comes);
             let distance = coming.map(|near| search.way_out(vertex, near.edge)).fold(f64::INFINITY, f64::min);
             if distance > touches {
-                found.edges.truncate(first);
-                continue;
+                self.edges.truncate(first);
+            } else {
+                self.end(Comer { vertex, distance });
             }
-            found.comers.push(Comer { vertex, distance });
-            found.first.push(found.edges.len() as u32);
         }
-        found
     }
 
-    /// Chooses the vertices that may touch something when all have come nearer to each other by at most `moved` [m]
-    /// since neighbours were found.
-    pub(crate) fn choose(&mut self, surface: &Surface, moved: f64, cell_size: f64) {
-        let is_due = |&k: &u32| self.comers[k as usize].distance <= moved + TOUCHES * cell_size;
+    /// The edges that were added last are those of a vertex.
+    fn end(&mut self, comer: Comer) {
+        self.comers.push(comer);
+        self.first.push(self.edges.len() as u32);
+    }
+
+    /// Takes it that all has moved with `velocity` [m/s] for `time` [s] and will as long again. Returns whether
+    /// neighbours have to be looked for anew before.
+    pub(crate) fn go_on(&mut self, scenery: &Scenery<'_>, velocity: &[Vector], time: f64) -> bool {
+        self.nearing.go_on(scenery.surface, velocity, time);
+        self.nearing.may_pass(scenery.most_moved * scenery.cell_size)
+    }
+
+    /// Takes it that all will move with `velocity` [m/s] for `time` [s], and chooses the vertices that may touch
+    /// something until then.
+    pub(crate) fn choose(&mut self, scenery: &Scenery<'_>, velocity: &[Vector], time: f64) {
+        self.nearing.foresee(scenery.surface, velocity, time);
+        let touches = |c: &Comer| self.nearing.by_next_look(c.vertex) + TOUCHES * scenery.cell_size;
+        let is_due = |&k: &u32| self.comers[k as usize].distance <= touches(&self.comers[k as usize]);
         let due: Vec<u32> = (0..self.comers.len() as u32).filter(is_due).collect();
         if due != self.due {
             self.due = due;
-            self.ask(surface);
+            self.ask(scenery.surface);
         }
     }
 
@@ -129,11 +187,6 @@ impl Neighbours {
         asked.sort_unstable();
         asked.dedup();
         self.asked = asked;
-    }
-
-    /// Whether nothing can touch before the next look.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.comers.is_empty()
     }
 
     /// Whether something may touch by now.
@@ -163,7 +216,19 @@ struct Search<'a> {
     cracks_touch: bool,
 }
 
-impl Search<'_> {
+impl Scenery<'_> {
+    /// What is farther apart than this now is met by nothing before the next look, and the size of cells [m].
+    fn reach(&self) -> (f64, f64) {
+        ((WIDEST + self.most_moved) * self.cell_size, self.cell_size)
+    }
+}
+
+impl<'a> Search<'a> {
+    fn new(scenery: &Scenery<'a>, rest: &'a [Point]) -> Self {
+        let Scenery { surface, place, cell_size, most_moved, cracks_touch } = *scenery;
+        Self { surface, place, rest, cell_size, most_moved, cracks_touch }
+    }
+
     /// What is farther apart than this now is met by nothing before the next look [m].
     fn reach(&self) -> f64 {
         (WIDEST + self.most_moved) * self.cell_size
@@ -284,9 +349,13 @@ mod tests {
         (surface, place)
     }
 
+    fn scenery<'a>(surface: &'a Surface, place: &'a [Point], (cell_size, most_moved): (f64, f64)) -> Scenery<'a> {
+        Scenery { surface, place, cell_size, most_moved, cracks_touch: true }
+    }
+
     proptest! {
-        /// Truth: every vertex with every edge. After the one ring has moved on by what it may, all that touch are
-        /// found.
+        /// Truth: every vertex with every edge. However the one ring moves on, with looks as often as it may need them,
+        /// all that touch are found at any time.
         #[test]
         fn what_touches_before_the_next_look_is_found(
             count in 8..60_usize,
@@ -294,34 +363,49 @@ mod tests {
             parts in 0..3_usize,
             turn in 0.0..0.6_f64,
             cell_size in 0.05..0.4_f64,
-            (part, heading) in (0.0..1.0_f64, 0.0..std::f64::consts::TAU),
+            ways in prop::collection::vec((0.0..1.0_f64, 0.0..std::f64::consts::TAU, 0.0..0.5_f64), 1..8),
         ) {
             let (surface, mut place) = moved(count, &slides, parts, turn);
             let most_moved = if parts == 1 { MOST_MOVED_OF_PIECES } else { MOST_MOVED };
-            let mut found = Neighbours::find(&surface, &place, (cell_size, most_moved), true);
-            let by = part * most_moved * cell_size;
-            found.choose(&surface, by, cell_size);
+            let scale = (cell_size, most_moved);
             let rest = surface.places_at_rest();
-            let all = |vertex: u32| {
-                let search = Search { surface: &surface, place: &place, rest: &rest, cell_size, most_moved, cracks_touch: true };
-                let normal = surface.normal(vertex, &place);
+            let all = |place: &[Point], vertex: u32| {
+                let scenery = scenery(&surface, place, scale);
+                let search = Search::new(&scenery, &rest);
+                let normal = surface.normal(vertex, place);
                 let faces = |edge: &u32| {
-                    let of_edge = surface.edge_normal(*edge, &place);
+                    let of_edge = surface.edge_normal(*edge, place);
                     of_edge.zip(normal).is_some_and(|(of_edge, normal)| of_edge.dot(&normal) < MAY_FACE)
                 };
                 let others = (0..surface.len() as u32).filter(|&e| e != vertex && surface.next(e) != Some(vertex));
                 let near = |edge: u32| Neighbour { edge, can_touch: search.can_touch(vertex, edge) };
                 others.filter(faces).map(near).collect::<Vec<_>>()
             };
-            let every: Vec<(u32, Vec<Neighbour>)> = (0..surface.len() as u32).map(|v| (v, all(v))).collect();
-            place[count..].iter_mut().for_each(|p| *p += Vector::new(heading.cos(), heading.sin()) * by);
-            let touches = |(vertex, near): (u32, &[Neighbour])| {
-                let met = meeting(&surface, &place, vertex, near, cell_size)?;
-                (met.gap < 0.1 * cell_size).then_some((vertex, met))
-            };
-            let expected: Vec<(u32, Meeting)> = every.iter().filter_map(|(v, near)| touches((*v, near))).collect();
-            let found: Vec<(u32, Meeting)> = found.iter().filter_map(touches).collect();
-            prop_assert_eq!(found, expected);
+            let mut found = Neighbours::find(&scenery(&surface, &place, scale));
+            let mut last = vec![Vector::zeros(); surface.len()];
+            for (part, heading, whole) in ways {
+                // The ring as a whole, and half of it by as much more: what is far from where they meet has to be
+                // followed as well.
+                let way = Vector::new(heading.cos(), heading.sin()) * (part * most_moved * cell_size);
+                let of = |v: usize| if v < count { Vector::zeros() } else if v < count + count / 2 { way } else { way * whole };
+                let velocity: Vec<Vector> = (0..surface.len()).map(of).collect();
+                found.go_on(&scenery(&surface, &place, scale), &last, 1.0);
+                found.nearing.foresee(&surface, &velocity, 1.0);
+                if found.nearing.may_pass(most_moved * cell_size) {
+                    found.find_again(&scenery(&surface, &place, scale));
+                }
+                found.choose(&scenery(&surface, &place, scale), &velocity, 1.0);
+                place.iter_mut().zip(&velocity).for_each(|(p, way)| *p += way);
+                last = velocity;
+                let touches = |(vertex, near): (u32, &[Neighbour])| {
+                    let met = meeting(&surface, &place, vertex, near, cell_size)?;
+                    (met.gap < 0.1 * cell_size).then_some((vertex, met))
+                };
+                let every = (0..surface.len() as u32).map(|v| (v, all(&place, v)));
+                let expected: Vec<(u32, Meeting)> = every.filter_map(|(v, near)| touches((v, &near))).collect();
+                let found: Vec<(u32, Meeting)> = found.iter().filter_map(touches).collect();
+                prop_assert_eq!(found, expected);
+            }
         }
     }
 }

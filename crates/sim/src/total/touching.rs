@@ -8,7 +8,7 @@ use super::supports::HeldFields;
 use super::surfaces::{Surfaces, VertexKey, can_meet};
 use crate::contact::impulses::{Impulse, Meetings, Share, allowed};
 use crate::contact::meeting::{Meeting, meeting, were_within};
-use crate::contact::neighbours::{Neighbours, TOGETHER};
+use crate::contact::neighbours::{Neighbours, Scenery, TOGETHER};
 use crate::crack::cracks::Cracks;
 use crate::saved::{self, Fits};
 use fissure_plane::{Point, Vector};
@@ -36,8 +36,8 @@ pub(super) struct Touching {
     neighbours: Neighbours,
     /// Where vertices that were asked for are [m].
     place: Vec<Point>,
-    /// How much nearer to each other surfaces may have come since neighbours were found [m].
-    moved: f64,
+    /// Whether neighbours that were found count.
+    are_found: bool,
     steps_since_look: u32,
     meetings: Meetings,
     /// What goes on from step to step.
@@ -104,7 +104,7 @@ impl Touching {
             is_void: true,
             neighbours: Neighbours::default(),
             place: Vec::new(),
-            moved: f64::INFINITY,
+            are_found: false,
             steps_since_look: 0,
             meetings: Meetings::default(),
             last,
@@ -134,7 +134,7 @@ impl Touching {
     /// What was found so far counts no more, so that a run goes on from here as one that is restored does.
     pub(super) fn look_again(&mut self) {
         self.is_stale = true;
-        self.moved = f64::INFINITY;
+        self.are_found = false;
     }
 
     /// Looks for what may touch, where surfaces may have moved enough.
@@ -144,38 +144,33 @@ impl Touching {
         }
         let Some(surfaces) = &self.surfaces else { return };
         self.steps_since_look += 1;
-        if self.steps_since_look < STEPS_BETWEEN_LOOKS && self.moved < f64::INFINITY {
+        if self.steps_since_look < STEPS_BETWEEN_LOOKS && self.are_found {
             return;
         }
-        // Twice: until the next look they go on as far.
-        let all = 0..surfaces.surface.len() as u32;
-        let speed = relative_speed(all.map(|v| surfaces.probe(v, moment.probes).value(&motion.velocity)));
-        let way = speed * moment.time_step * f64::from(STEPS_BETWEEN_LOOKS);
-        self.moved += way;
         self.steps_since_look = 0;
-        if self.moved + way >= surfaces.most_moved() * self.cell_size {
-            self.find_neighbours(moment, motion);
-            self.moved = 0.0;
+        let time = moment.time_step * f64::from(STEPS_BETWEEN_LOOKS);
+        if self.are_found {
+            let velocity = velocities(surfaces, moment, motion);
+            let scenery = scenery_of(surfaces, &self.place, (self.cell_size, self.cracks_touch));
+            if !self.neighbours.go_on(&scenery, &velocity, time) {
+                self.neighbours.choose(&scenery, &velocity, time);
+                return;
+            }
         }
-        if let Some(surfaces) = &self.surfaces {
-            self.neighbours.choose(&surfaces.surface, self.moved + way, self.cell_size);
-        }
-    }
-
-    /// Finds what may touch before the next look.
-    fn find_neighbours(&mut self, moment: &Moment<'_>, motion: &Motion) {
         if self.is_stale {
             self.lay_surfaces(moment);
         }
         let Some(surfaces) = &self.surfaces else { return };
         let place = |v: u32| surfaces.probe(v, moment.probes).moved(&motion.displacement);
         self.place = (0..surfaces.surface.len() as u32).map(place).collect();
-        self.neighbours = Neighbours::find(
-            &surfaces.surface,
-            &self.place,
-            (self.cell_size, surfaces.most_moved()),
-            self.cracks_touch,
-        );
+        let scenery = scenery_of(surfaces, &self.place, (self.cell_size, self.cracks_touch));
+        if self.are_found {
+            self.neighbours.find_again(&scenery);
+        } else {
+            self.neighbours = Neighbours::find(&scenery);
+        }
+        self.neighbours.choose(&scenery, &velocities(surfaces, moment, motion), time);
+        self.are_found = true;
     }
 
     /// Lays the surfaces as they are now.
@@ -183,9 +178,7 @@ impl Touching {
         let Some(surfaces) = &mut self.surfaces else { return };
         *surfaces = Surfaces::new(moment.scene, moment.probes, moment.cracks);
         self.last.impulses = renumbered(&self.last.impulses, surfaces);
-        if !self.neighbours.is_empty() {
-            self.moved = f64::INFINITY;
-        }
+        self.are_found = false;
         (self.is_stale, self.is_void) = (false, false);
     }
 
@@ -292,9 +285,13 @@ fn renumbered(impulses: &[Kept], now: &Surfaces) -> Vec<Kept> {
     all
 }
 
-/// No two of `velocities` differ by more than this [m/s].
-fn relative_speed(velocities: impl Iterator<Item = Vector>) -> f64 {
-    let infinite = Vector::repeat(f64::INFINITY);
-    let (low, high) = velocities.fold((infinite, -infinite), |(low, high), v| (low.inf(&v), high.sup(&v)));
-    (high - low).norm().max(0.0)
+/// Surfaces with their vertices at `place` [m], for a look at them; `cell_size` [m].
+fn scenery_of<'a>(surfaces: &'a Surfaces, place: &'a [Point], (cell_size, cracks_touch): (f64, bool)) -> Scenery<'a> {
+    Scenery { surface: &surfaces.surface, place, cell_size, most_moved: surfaces.most_moved(), cracks_touch }
+}
+
+/// The velocities of all vertices [m/s].
+fn velocities(surfaces: &Surfaces, moment: &Moment<'_>, motion: &Motion) -> Vec<Vector> {
+    let all = 0..surfaces.surface.len() as u32;
+    all.map(|v| surfaces.probe(v, moment.probes).value(&motion.velocity)).collect()
 }
