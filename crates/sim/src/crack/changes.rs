@@ -17,6 +17,8 @@ pub(crate) enum Cause {
     DrawnAhead,
     /// It has stayed; the tip that says how it divides has moved.
     ItsTip,
+    /// It has stayed; the tip no longer says how it divides, or does now.
+    FarFromItsTip,
 }
 
 /// A segment that divides, or divided before, as it does not at the other of the two moments.
@@ -72,19 +74,27 @@ impl Changes {
         let mut found = Touched::Nothing;
         let is_there = |b: &(Point, Point)| b.0 <= high && low <= b.1;
         let there = self.boxes.iter().zip(&self.segments).filter(|of| is_there(of.0));
-        // Of the tips that were asked about last, whether the box is behind them.
-        let mut behind: Option<(u32, bool)> = None;
+        // Of the tips that were asked about last, how far ahead of any of them the box reaches.
+        let mut known: Option<(u32, f64)> = None;
+        let mut most_ahead = |tips: u32| match known.filter(|known| known.0 == tips) {
+            Some((_, most)) => most,
+            None => {
+                let of_tip = |tip: &TipRay| ahead.most_ahead(tip, low, high);
+                let most = self.tips(tips).iter().map(of_tip).fold(f64::NEG_INFINITY, f64::max);
+                known = Some((tips, most));
+                most
+            }
+        };
         for s in there.flat_map(|of| of.1).filter(|s| !apart(low, high, s.a, s.b)) {
+            let stays = match s.cause {
+                Cause::Itself | Cause::DrawnAhead => false,
+                Cause::FarFromItsTip => ahead.is_wholly_behind(most_ahead(s.tips)),
+                Cause::ItsTip => ahead.is_behind(most_ahead(s.tips)),
+            };
             let now = match s.cause {
-                Cause::Itself => Touched::Something,
+                _ if stays => Touched::Nothing,
                 Cause::DrawnAhead => Touched::DrawnAhead(s.line, s.tips),
-                Cause::ItsTip => {
-                    let known = behind.filter(|known| known.0 == s.tips).map(|known| known.1);
-                    let all = || self.tips(s.tips).iter().all(|tip| ahead.is_behind(tip, low, high));
-                    let is_behind = known.unwrap_or_else(all);
-                    behind = Some((s.tips, is_behind));
-                    if is_behind { Touched::Nothing } else { Touched::Something }
-                }
+                _ => Touched::Something,
             };
             if now == Touched::Nothing || now == found || !touches(low, high, s.a, s.b) {
                 continue;

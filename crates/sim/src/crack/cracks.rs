@@ -1,7 +1,7 @@
 //! All cracks of a run, and how a tip among them is named.
 
 use super::tip::Tip;
-use super::{Crack, KINK, SHORTEST_BRANCH, chord_start, slot};
+use super::{Crack, SHORTEST_BRANCH, chord_start, is_kink, slot};
 use crate::crack::division::CrackLine;
 use crate::saved::{self, Fits};
 use fissure_scene::{CrackEnd, End, Point, Scene, TipState, Vector};
@@ -57,6 +57,11 @@ impl Stretch {
     /// Whether the segment from the point number `k` of the crack to the next one is part of it.
     pub(crate) fn has_segment(self, k: usize) -> bool {
         (self.from.min(self.to)..self.from.max(self.to)).contains(&k)
+    }
+
+    /// Whether it is all of a crack of so many points.
+    pub(crate) fn is_all_of(self, points: usize) -> bool {
+        self.from.abs_diff(self.to) + 1 == points
     }
 
     /// Whether it is walked against the direction of the crack, which then runs towards where the walk begins.
@@ -180,7 +185,8 @@ impl Cracks {
     /// As [`Cracks::behind`], the points of the cracks being where `place` (crack, number of the point) says.
     pub(crate) fn behind_at(&self, id: TipId, over: f64, place: impl Fn(usize, usize) -> Point) -> Vec<Point> {
         let trail = self.trail(id);
-        let mut points = vec![place(id.crack, trail[0].from)];
+        let mut points = Vec::with_capacity(64);
+        points.push(place(id.crack, trail[0].from));
         let mut way = 0.0;
         for stretch in trail {
             for k in stretch.points().skip(1) {
@@ -204,7 +210,7 @@ impl Cracks {
             if way >= within {
                 break;
             }
-            if before.perp(&last).atan2(before.dot(&last)).abs() > KINK {
+            if is_kink(before, last) {
                 return Some(way);
             }
         }

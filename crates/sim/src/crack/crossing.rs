@@ -28,6 +28,7 @@
 
 use fissure_plane::{Point, orientation};
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
 /// A side of a crack, for one who walks from its start to its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -73,7 +74,7 @@ pub(crate) struct Meeting {
     /// Whether the node lies on the crack itself.
     pub(crate) at_node: bool,
     /// Numbers of the segments that are crossed, those at the node included.
-    pub(crate) crossed: Vec<u32>,
+    pub(crate) crossed: SmallVec<[u32; 4]>,
 }
 
 fn sign(value: f64) -> i32 {
@@ -109,7 +110,7 @@ pub(crate) fn apart(p: Point, q: Point, a: Point, b: Point) -> bool {
 /// the way, in any order.
 pub(crate) fn meeting(particle: Point, node: Point, segments: impl Iterator<Item = Segment> + Clone) -> Meeting {
     let near = segments.filter(|s| !apart(particle, node, s.a, s.b));
-    let (mut balance, mut crossed) = (0, Vec::new());
+    let (mut balance, mut crossed) = (0, SmallVec::new());
     for s in near.clone() {
         let (of_particle, of_node) = (sign(orientation(s.a, s.b, particle)), sign(orientation(s.a, s.b, node)));
         if of_particle * of_node > 0 {
@@ -215,7 +216,8 @@ impl Coincidence {
     }
 
     fn met(&self) -> Meeting {
-        let mut crossed: Vec<u32> = self.segments.iter().filter(|s| self.crosses(s)).map(|s| s.number).collect();
+        let mut crossed: SmallVec<[u32; 4]> =
+            self.segments.iter().filter(|s| self.crosses(s)).map(|s| s.number).collect();
         let sides = self.segments.iter().filter(|s| crossed.contains(&s.number)).map(|s| self.side_beside(s));
         let mut balance: i32 = sides.sum();
         if self.leaves_downwards() {

@@ -21,8 +21,8 @@ use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 use std::ops::Range;
 
-/// What a line crosses: sorted (crack, side of the particle); empty: nothing.
-pub(crate) type CrossedSet = Vec<(u32, Side)>;
+/// What a line crosses: sorted (crack, side of the particle); empty: nothing. Hardly ever more than two.
+pub(crate) type CrossedSet = SmallVec<[(u32, Side); 2]>;
 
 /// How far behind the tip, in cells, the crack counts as divided by particle position.
 pub(crate) const WINDOW: f64 = 2.0;
@@ -145,9 +145,22 @@ impl Ahead {
         extent
     }
 
-    /// Whether no node of a box lies so far ahead of a tip that what passes the crack on its way there is whole.
-    pub(crate) fn is_behind(&self, tip: &TipRay, low: Point, high: Point) -> bool {
-        !self.cut.shares && self.extent(tip, low, high)[0][1] < self.cut.node_ahead - CLEARLY
+    /// How far ahead of a tip any place of a box lies at most [cells].
+    pub(crate) fn most_ahead(&self, tip: &TipRay, low: Point, high: Point) -> f64 {
+        let (middle, half) = (nalgebra::center(&low, &high), (high - low) * 0.5);
+        ((middle - tip.position).dot(&tip.ahead) + half.dot(&tip.ahead.abs())) / self.cell_size
+    }
+
+    /// Whether no node of a box of which no place lies farther than `most` cells ahead of a tip lies so far ahead of it
+    /// that what passes the crack on its way there is whole.
+    pub(crate) fn is_behind(&self, most: f64) -> bool {
+        !self.cut.shares && most < self.cut.node_ahead - CLEARLY
+    }
+
+    /// As [`Ahead::is_behind`], whether all of the box, and with it all that its pairs can meet of what is drawn ahead
+    /// of the tip, lies behind the tip.
+    pub(crate) fn is_wholly_behind(&self, most: f64) -> bool {
+        !self.cut.shares && most < -CLEARLY
     }
 
     /// Whether a tip divides no pair of a box by the way that it is thought to go on: all nodes lie too far ahead, or
@@ -212,13 +225,19 @@ impl Line {
         let added =
             (0..=now.saturating_sub(was)).find(|&k| self.segments[middle.min(now - 1) + k] == before.segments[middle]);
         let moved = [Some((0, 0)), Some((was - 1, now as i64 - was as i64)), added.map(|k| (middle, k as i64))];
-        let stretch = |(from, by): (usize, i64)| {
+        let mut longest = (0..0, 0);
+        for (from, by) in moved.into_iter().flatten() {
+            if by == longest.1 && longest.0.contains(&from) {
+                continue;
+            }
             let is_kept = |&k: &usize| usize::try_from(k as i64 + by).is_ok_and(|at| at < now && same(at, k));
             let below = (0..from).rev().take_while(is_kept).count();
             let above = (from..was).take_while(is_kept).count();
-            (if above == 0 { from..from } else { from - below..from + above }, by)
-        };
-        moved.into_iter().flatten().map(stretch).max_by_key(|(range, _)| range.len()).unwrap_or((0..0, 0))
+            if above > 0 && below + above >= longest.0.len() {
+                longest = (from - below..from + above, by);
+            }
+        }
+        longest
     }
 
     /// The segments that divide, or divided `before`, as they do not at the other of the two moments; `line`, `tips`:
@@ -234,7 +253,11 @@ impl Line {
         };
         let (stayed, by) = self.kept(before, |now, was| self.part(now) == before.part(was));
         let stays = (stayed.start as i64 + by) as usize..(stayed.end as i64 + by) as usize;
-        let has = |line: &Self, part| (0..line.segments.len()).any(|k| line.part(k) == part);
+        // What is drawn ahead of a tip, or carried on beyond a junction, is no segment of a crack itself.
+        let has = |line: &Self, part: ((Point, Point), SegmentKind, bool)| {
+            let first = if part.1 == SegmentKind::Real { 0 } else { line.last as usize + 1 };
+            (first..line.segments.len()).any(|k| line.part(k) == part)
+        };
         // What a tip that has moved says of segments near to it.
         let has_moved = |tip: &&TipRay| !(self.tips.contains(tip) && before.tips.contains(tip));
         let moved: Vec<Point> =
@@ -248,8 +271,15 @@ impl Line {
         for (of, other, stays) in [(self, before, &stays), (before, self, &stayed)] {
             let count = of.last as usize + 1;
             let is_new = |k: usize| if k < count { !stays.contains(&k) } else { !has(other, of.part(k)) };
+            // A tip that gets on no longer says how the segments divide that it leaves behind.
+            let has_stayed = |k: usize| {
+                let by = if std::ptr::eq(of, self) { -by } else { by };
+                let before = usize::try_from(k as i64 + by).ok().filter(|&k| k <= other.last as usize);
+                k < count && before.is_some_and(|k_before| of.segments[k] == other.segments[k_before])
+            };
             let cause = |k: usize| match (is_new(k), of.kinds[k]) {
                 (true, SegmentKind::AheadOfTip) => Some(Cause::DrawnAhead),
+                (true, SegmentKind::Real) if has_stayed(k) => Some(Cause::FarFromItsTip),
                 (true, _) => Some(Cause::Itself),
                 (false, _) => is_near(of, k).then_some(Cause::ItsTip),
             };
@@ -412,6 +442,12 @@ impl Division {
         Changes::new(boxes, changed_segments, tips)
     }
 
+    /// A particle at another `point` with the same key, and with the same nodes, is told the same by
+    /// [`Division::may_have_changed`].
+    pub(crate) fn key(&self, point: Point) -> (i64, i64) {
+        ((point.x / self.cell_size).floor() as i64, (point.y / self.cell_size).floor() as i64)
+    }
+
     /// Whether a pair of a particle at `point` and a node may be divided otherwise than before `changes`, both of them
     /// in the box from `low` to `high`.
     pub(crate) fn may_have_changed(&self, changes: &Changes, point: Point, low: Point, high: Point) -> bool {
@@ -495,8 +531,7 @@ impl Division {
     }
 
     fn bucket(&self, point: Point) -> &[Listed] {
-        let key = ((point.x / self.cell_size).floor() as i64, (point.y / self.cell_size).floor() as i64);
-        self.buckets.get(&key).map_or(&[], Vec::as_slice)
+        self.buckets.get(&self.key(point)).map_or(&[], Vec::as_slice)
     }
 
     /// Distance within which [`Division::segments_around`] misses nothing when it looks at so many cells `beside` that
@@ -624,7 +659,7 @@ impl Division {
         self.shares(particle, node, 0.0)
             .into_iter()
             .max_by(|a, b| a.fraction.total_cmp(&b.fraction))
-            .map_or(Vec::new(), |s| s.crossed)
+            .map_or_else(CrossedSet::new, |s| s.crossed)
     }
 
     /// The shares of the pair (`particle`, `node`) in the fields of the node; fractions add up to 1. Never empty.
@@ -655,16 +690,17 @@ impl Division {
     /// As [`Division::shares`], `bucket` being the segments that the way may meet.
     fn shares_across(&self, bucket: &[Listed], particle: Point, node: Point, domain: f64) -> Shares {
         let mut shares = Shares::new();
-        shares.push(Share { crossed: Vec::new(), fraction: 1.0, gradient: Vector::zeros() });
+        shares.push(Share { crossed: CrossedSet::new(), fraction: 1.0, gradient: Vector::zeros() });
+        let near: SmallVec<[Listed; 8]> = bucket.iter().filter(|s| !s.is_apart(particle, node)).copied().collect();
         // So it is with most pairs.
-        if bucket.iter().all(|s| s.is_apart(particle, node)) {
+        if near.is_empty() {
             return shares;
         }
         let cut = |segments: &[Listed], crossed: &[u32]| {
             let line = &self.lines[segments[0].line as usize];
             divide(line, segments, particle, node, self.cell_size, domain, crossed)
         };
-        let of_lines = || bucket.chunk_by(|s, t| s.line == t.line);
+        let of_lines = || near.chunk_by(|s, t| s.line == t.line);
         let mut found: SmallVec<[(u32, Option<PairCut>); 8]> =
             of_lines().map(|segments| (segments[0].line, cut(segments, &[]))).collect();
         // A continuation beyond a junction counts where the pair crosses the other crack itself, whatever the numbers
@@ -731,8 +767,12 @@ fn prepare(line: &CrackLine, tip_division: TipDivision, cut: TipCut, cell_size: 
     let n = p.len();
     let ahead_of_end = (p[n - 1] - p[n - 2]).normalize();
     let ahead_of_start = (p[0] - p[1]).normalize();
-    let mut segments: Vec<(Point, Point)> = p.windows(2).map(|w| (w[0], w[1])).collect();
-    let mut kinds = vec![SegmentKind::Real; segments.len()];
+    // With room for what carries on.
+    let all = n + 1 + line.trunk.len();
+    let mut segments: Vec<(Point, Point)> = Vec::with_capacity(all);
+    segments.extend(p.windows(2).map(|w| (w[0], w[1])));
+    let mut kinds = Vec::with_capacity(all);
+    kinds.resize(n - 1, SegmentKind::Real);
     let mut tips = Vec::new();
     let mut carry_on = |end: LineEnd, from: Point, ahead: Vector| {
         let (length, kind) = match end {
@@ -750,7 +790,8 @@ fn prepare(line: &CrackLine, tip_division: TipDivision, cut: TipCut, cell_size: 
         })
     };
     // All segments run from the start to the end of the crack, so that a line through a vertex is crossed just once.
-    let mut of: Vec<u32> = (0..segments.len() as u32).collect();
+    let mut of: Vec<u32> = Vec::with_capacity(all);
+    of.extend(0..segments.len() as u32);
     if let Some(point) = carry_on(line.end, p[n - 1], ahead_of_end) {
         segments.push((p[n - 1], point));
         of.push(n as u32 - 2);

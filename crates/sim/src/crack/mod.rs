@@ -79,6 +79,16 @@ pub(crate) const DIRECTION_LENGTH: f64 = 2.0;
 /// longer that of one direction. Growth in quarter cells along a smooth path turns by less.
 pub(crate) const KINK: f64 = 0.26;
 
+/// Whether a crack that goes `before` and then `after` has a kink between the two.
+pub(crate) fn is_kink(before: Vector, after: Vector) -> bool {
+    let (sine, cosine) = (before.perp(&after), before.dot(&after));
+    // As most turns are; a tangent is larger than its angle.
+    if sine.abs() < KINK * cosine {
+        return false;
+    }
+    sine.atan2(cosine).abs() > KINK
+}
+
 /// A branch shorter than this part of the chord is too short to have a field of its own that could be measured.
 const SHORTEST_BRANCH: f64 = 0.124;
 

@@ -179,18 +179,19 @@ impl Fields {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use smallvec::smallvec;
 
     /// Truth: the drawing. Node 7 lies between crack 0 above it and crack 1 below it: three fields, of which the outer
     /// two see each other across both cracks and do not face.
     #[test]
     fn fields_face_across_one_crack() {
         let mut fields = Fields::new(10);
-        let above = fields.find_or_add(7, None, &vec![(0, Side::Above)]) as u32;
-        let below = fields.find_or_add(7, None, &vec![(1, Side::Below)]) as u32;
-        assert_eq!(fields.find_or_add(7, None, &vec![(0, Side::Above)]) as u32, above);
+        let above = fields.find_or_add(7, None, &smallvec![(0, Side::Above)]) as u32;
+        let below = fields.find_or_add(7, None, &smallvec![(1, Side::Below)]) as u32;
+        assert_eq!(fields.find_or_add(7, None, &smallvec![(0, Side::Above)]) as u32, above);
         // Another body there is whole: it faces nothing.
-        let guest = fields.find_or_add(7, Some(1), &Vec::new()) as u32;
-        assert_eq!(fields.find_or_add(7, Some(1), &Vec::new()) as u32, guest);
+        let guest = fields.find_or_add(7, Some(1), &CrossedSet::new()) as u32;
+        assert_eq!(fields.find_or_add(7, Some(1), &CrossedSet::new()) as u32, guest);
         let all = [7, above, below, guest];
         let found: Vec<_> = fields.facing_pairs(&all).map(|p| (p.crack, p.above_and_below())).collect();
         assert_eq!(found, [(0, [above, 7]), (1, [7, below])]);

@@ -3,6 +3,7 @@
 use super::advance::{Advance, LAST_LIGAMENT};
 use crate::crack::Crack;
 use crate::crack::cracks::{Cracks, ENDS, TipId};
+use crate::crack::crossing::apart;
 use fissure_plane::{Point, Region, Vector, nearest_on_segment, orientation, segments_touch};
 use fissure_scene::{CrackEnd, End, TipState};
 
@@ -128,6 +129,7 @@ pub(super) fn beside(cracks: &Cracks, id: TipId, toward: Vector, h: f64) -> Opti
     let has_parted = own_tip.grown.min(own_tip.since_division) >= PARTED * h;
     let is_twin = |other: usize, line: &Crack| crack.is_joined_to(other) || line.is_joined_to(id.crack);
     let mut nearest: Option<(f64, Point)> = None;
+    let around = Vector::repeat(FAR * LAST_LIGAMENT * h);
     // Of two tips side by side only one ends on the other.
     let ended_here = |c: &Crack| {
         let met = |end: End| c.tip(end).is_some_and(|t| t.state == TipState::MetCrack);
@@ -146,8 +148,14 @@ pub(super) fn beside(cracks: &Cracks, id: TipId, toward: Vector, h: f64) -> Opti
             // From the tip back along the own crack.
             let k = if other == id.crack && id.end == End::End { n - j } else { j };
             let (a, b) = (line.points[k - 1], line.points[k]);
-            behind += (b - a).norm();
             if other == id.crack && behind < PARTED * h {
+                behind += (b - a).norm();
+                if behind < PARTED * h {
+                    continue;
+                }
+            }
+            // As most are.
+            if apart(from - around, from + around, a, b) {
                 continue;
             }
             let at = nearest_on_segment(a, b, from);

@@ -39,7 +39,7 @@ impl Gauge<'_> {
     pub(crate) fn contours(&self, moment: &dyn Observed, cracks: &Cracks, id: TipId) -> Vec<ContourReading> {
         let h = self.scene.cell_size;
         let widest = RADII.into_iter().fold(0.0, f64::max);
-        let room = self.free_radius(cracks, id, true, widest * h);
+        let room = self.free_radii(cracks, id, widest * h)[1];
         let within: Vec<f64> = RADII.into_iter().filter(|&cells| cells * h <= room).collect();
         let Some(&outermost) = within.last() else { return Vec::new() };
         let mut zone = moment.tip_zone(cracks, id, (outermost + KERNEL_REACH) * h);

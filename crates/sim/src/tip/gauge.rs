@@ -1,9 +1,9 @@
 //! What a crack tip feels: from the material around it to J, K_I and K_II.
 
 use crate::StressIntensity;
-use crate::crack::KINK;
 use crate::crack::cracks::{Cracks, TipId};
-use crate::crack::crossing::Side;
+use crate::crack::crossing::{Side, apart};
+use crate::crack::is_kink;
 use crate::grid::kernel::axis_stencil;
 use crate::material::elastic::Elastic;
 use crate::solver::Observed;
@@ -160,28 +160,29 @@ impl Gauge<'_> {
     /// cope with a kink, the way to that [m].
     fn domain_radius(&self, moment: &dyn Observed, cracks: &Cracks, id: TipId) -> (f64, bool, Option<f64>) {
         let h = self.scene.cell_size;
-        let radius = |bends: bool| {
-            let given = self.scene.solver.j_radius;
-            let enough = given.unwrap_or(0.0).max(WIDE_RADIUS / PART_OF_ROOM);
-            let room = self.free_radius(cracks, id, bends, enough * h) / h;
+        let given = self.scene.solver.j_radius;
+        let enough = given.unwrap_or(0.0).max(WIDE_RADIUS / PART_OF_ROOM);
+        let [passing_bends, up_to_bends] = self.free_radii(cracks, id, enough * h);
+        let radius = |free: f64| {
+            let room = free / h;
             let wanted = given.unwrap_or((PART_OF_ROOM * room).clamp(NARROW_RADIUS, WIDE_RADIUS));
             (wanted.min(room).max(SMALLEST_RADIUS) * h, wanted > room)
         };
         if moment.tells_bends() && self.scene.solver.mode_split == ModeSplit::Interaction {
-            let (passing, is_shrunk) = radius(false);
+            let (passing, is_shrunk) = radius(passing_bends);
             let kink = cracks.way_to_kink(id, passing + KINK_MARGIN * h);
             if let Some(way) = kink.filter(|&way| way > SHORTEST_BRANCH * h) {
                 return (passing, is_shrunk, Some(way));
             }
         }
-        let (radius, is_shrunk) = radius(true);
+        let (radius, is_shrunk) = radius(up_to_bends);
         (radius, is_shrunk, None)
     }
 
     /// Distance from a tip to the nearest thing that would spoil the integral: a ring, a crack that does not lead to
-    /// it, the other end of those that do, a bend of theirs where `bends` count [m]; what is farther than `enough` [m]
-    /// is not looked at.
-    pub(super) fn free_radius(&self, cracks: &Cracks, id: TipId, bends: bool, enough: f64) -> f64 {
+    /// it, the other end of those that do, and then a bend of theirs too [m]; what is farther than `enough` [m] is not
+    /// looked at.
+    pub(super) fn free_radii(&self, cracks: &Cracks, id: TipId, enough: f64) -> [f64; 2] {
         let line = cracks.of(id);
         let tip = cracks.position(id);
         let body = &self.scene.bodies[line.body as usize];
@@ -195,8 +196,13 @@ impl Gauge<'_> {
             if other.least_distance(tip) > free {
                 continue;
             }
+            let of_trail = trail.iter().filter(|stretch| stretch.crack == index);
+            if of_trail.clone().any(|stretch| stretch.is_all_of(other.points.len())) {
+                continue;
+            }
             for (k, w) in other.points.windows(2).enumerate() {
-                if !trail.iter().any(|stretch| stretch.crack == index && stretch.has_segment(k)) {
+                let by = Vector::repeat(free);
+                if !apart(tip - by, tip + by, w[0], w[1]) && !of_trail.clone().any(|stretch| stretch.has_segment(k)) {
                     free = free.min(fissure_plane::distance_to_segment(tip, w[0], w[1]));
                 }
             }
@@ -206,27 +212,27 @@ impl Gauge<'_> {
         let mut over = (2.0 * free).max(self.scene.cell_size);
         let points = loop {
             let points = cracks.behind(id, over);
-            let is_whole = fissure_plane::polyline_length(&points) < over;
-            if is_whole || points.iter().any(|p| (p - tip).norm() > free) {
+            if points.iter().any(|p| (p - tip).norm() > free) || fissure_plane::polyline_length(&points) < over {
                 break points;
             }
             over *= 2.0;
         };
+        let mut bend = f64::INFINITY;
         for w in points.windows(3) {
-            let (a, b) = (w[1] - w[0], w[2] - w[1]);
-            // Both the turn at one point and what small turns have added up to since the tip.
-            let turned = a.perp(&b).atan2(a.dot(&b)).abs().max((-ahead).perp(&b).atan2((-ahead).dot(&b)).abs());
             let distance = (w[1] - tip).norm();
             if distance > free {
                 break;
             }
-            if bends && turned > KINK {
-                free = free.min(distance);
+            // Both the turn at one point and what small turns have added up to since the tip.
+            let (a, b) = (w[1] - w[0], w[2] - w[1]);
+            if is_kink(a, b) || is_kink(-ahead, b) {
+                bend = distance;
                 break;
             }
         }
         let far = trail.last().map_or(tip, |stretch| cracks[stretch.crack].points[stretch.to]);
-        free.min((far - tip).norm())
+        let far = (far - tip).norm();
+        [free.min(far), free.min(bend).min(far)]
     }
 
     /// J along the crack by a contour, with the inertia within it where the scene asks for that.

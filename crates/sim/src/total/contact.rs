@@ -38,6 +38,7 @@ use crate::crack::cracks::{Cracks, Stretch};
 use crate::saved::{self, Fits};
 use fissure_plane::{Point, Vector};
 use fissure_scene::{CrackEnd, End};
+use smallvec::{SmallVec, smallvec};
 
 /// Rounds through all points in a step, at most.
 const ROUNDS: usize = 32;
@@ -72,7 +73,7 @@ struct MeetingPoint {
     segment: u32,
     /// At rest [m].
     place: Point,
-    fields: Box<[FacingFields]>,
+    fields: SmallVec<[FacingFields; 4]>,
     /// The largest E' around it [Pa].
     modulus: f64,
     /// Force on the face above in the last step, per unit thickness [N/m].
@@ -81,10 +82,31 @@ struct MeetingPoint {
     on_faces: f64,
 }
 
+/// A pair of fields of a node that face each other across a crack, and are held apart at the feet of other nodes.
+#[derive(Debug, Clone, Copy)]
+struct Idle {
+    node: u32,
+    crack: u32,
+    segment: u32,
+    /// Foot of the node on the segment [m].
+    place: Point,
+}
+
+/// What [`Contacts`] are made of: for each pair of fields that face each other across a crack one or the other.
+#[derive(Debug, Default)]
+struct Laid {
+    points: Vec<MeetingPoint>,
+    idle: Vec<Idle>,
+}
+
 /// All points at which the faces of cracks may meet, in the order of their nodes.
 #[derive(Debug)]
 pub(super) struct Contacts {
     points: Vec<MeetingPoint>,
+    /// In the order of their nodes, too.
+    idle: Vec<Idle>,
+    /// Numbers of the points of each crack when points were laid last.
+    lengths: Vec<usize>,
     /// Numbers of those that pressed on each other in the last step.
     pressed: Vec<u32>,
     /// Coefficient of friction; none where faces pass through each other.
@@ -144,8 +166,11 @@ pub(super) type FaceForces = Vec<(u32, [f64; 2], f64)>;
 impl Contacts {
     /// The points of `lattice`. `friction`: coefficient of friction; none where faces pass through each other.
     pub(super) fn new(friction: Option<f64>, lattice: &Lattice, cracks: &Cracks) -> Self {
+        let Laid { points, idle } = all_points(lattice, cracks);
         Self {
-            points: all_points(lattice, cracks),
+            points,
+            idle,
+            lengths: lengths(cracks),
             pressed: Vec::new(),
             friction,
             cell_size: lattice.grid.cell_size,
@@ -190,7 +215,9 @@ impl Contacts {
         if self.friction.is_none() {
             return;
         }
-        let before = std::mem::replace(&mut self.points, all_points(lattice, cracks));
+        let Laid { points, idle } = all_points(lattice, cracks);
+        (self.idle, self.lengths) = (idle, lengths(cracks));
+        let before = std::mem::replace(&mut self.points, points);
         let mut before = before.into_iter().filter(|point| point.force != Vector::zeros()).peekable();
         let mut begin = 0;
         while let Some(node) = before.peek().map(|point| point.node) {
@@ -212,36 +239,52 @@ impl Contacts {
         self.friction.is_some() && !self.points.is_empty()
     }
 
-    /// The same after a change: nodes elsewhere have the points they had.
-    pub(super) fn refresh(&mut self, near: &Near, lattice: &Lattice, cracks: &Cracks) {
+    /// The same after a change: nodes elsewhere have the points they had. `turned`: nodes of which a field has got
+    /// mass, or has lost all.
+    pub(super) fn refresh(&mut self, near: &Near, turned: &[usize], lattice: &Lattice, cracks: &Cracks) {
+        let stays = Stays::new(near, turned, &self.lengths, lattice, cracks);
+        self.lengths = lengths(cracks);
         let forks = cracks.forks();
         // A point sees nodes of the same stencil, so that what has changed there changes it.
         let reach = (lattice.reach() + 1.0) * lattice.grid.cell_size;
-        let mut points = Vec::with_capacity(self.points.len() + 32);
-        let mut before = std::mem::take(&mut self.points).into_iter().peekable();
-        for node in lattice.fields().divided_nodes() {
-            while before.next_if(|point| (point.node as usize) < node).is_some() {}
-            let own = std::iter::from_fn(|| before.next_if(|point| point.node as usize == node));
-            if near.is_within(lattice.grid.position(node), reach) {
-                let first = points.len();
-                add_points_of_node(lattice, node, cracks, &forks, &mut points);
-                // What the faces did to each other in this step they did, however the node is divided now: tips may be
-                // measured again before the next.
-                for before in own {
-                    if let Some(now) = points[first..].iter_mut().find(|point| point.crack == before.crack) {
-                        now.force += before.force;
-                        now.on_faces = before.on_faces;
-                    }
+        let before = std::mem::take(&mut self.points);
+        let mut now = Laid { points: Vec::with_capacity(before.len() + 32), idle: Vec::with_capacity(self.idle.len()) };
+        let mut before = before.into_iter().peekable();
+        let mut idle = std::mem::take(&mut self.idle).into_iter().peekable();
+        let renumbered = |point: MeetingPoint| {
+            let segment = near.segment_now(point.crack, point.segment);
+            MeetingPoint { segment, ..point }
+        };
+        let renumbered_idle = |of: Idle| Idle { segment: near.segment_now(of.crack, of.segment), ..of };
+        for node in near.divided_nodes(lattice, reach) {
+            let is_before = |other: u32| (other as usize) < node;
+            now.points.extend(std::iter::from_fn(|| before.next_if(|point| is_before(point.node))).map(renumbered));
+            now.idle.extend(std::iter::from_fn(|| idle.next_if(|of| is_before(of.node))).map(renumbered_idle));
+            let own = std::iter::from_fn(|| before.next_if(|point| point.node as usize == node)).map(renumbered);
+            let own: SmallVec<[MeetingPoint; 2]> = own.collect();
+            let own_idle = std::iter::from_fn(|| idle.next_if(|of| of.node as usize == node)).map(renumbered_idle);
+            let own_idle: SmallVec<[Idle; 2]> = own_idle.collect();
+            if stays.of_node(node, &own, &own_idle, lattice, cracks) {
+                // As a new one that takes over from the one before: a force of −0 is one of 0.
+                let taken_over = |point: MeetingPoint| MeetingPoint { force: Vector::zeros() + point.force, ..point };
+                now.points.extend(own.into_iter().map(taken_over));
+                now.idle.extend(own_idle);
+                continue;
+            }
+            let first = now.points.len();
+            add_points_of_node(lattice, node, cracks, &forks, &mut now);
+            // What the faces did to each other in this step they did, however the node is divided now: tips may be
+            // measured again before the next.
+            for before in own {
+                if let Some(now) = now.points[first..].iter_mut().find(|point| point.crack == before.crack) {
+                    now.force += before.force;
+                    now.on_faces = before.on_faces;
                 }
-            } else {
-                let now = |point: MeetingPoint| {
-                    let segment = near.segment_now(point.crack, point.segment);
-                    MeetingPoint { segment, ..point }
-                };
-                points.extend(own.map(now));
             }
         }
-        self.points = points;
+        now.points.extend(before.map(renumbered));
+        now.idle.extend(idle.map(renumbered_idle));
+        (self.points, self.idle) = (now.points, now.idle);
         self.note_pressed();
     }
 
@@ -607,23 +650,98 @@ impl Masses<'_> {
     }
 }
 
-/// The points of all nodes.
-fn all_points(lattice: &Lattice, cracks: &Cracks) -> Vec<MeetingPoint> {
-    let forks = cracks.forks();
-    let mut points = Vec::new();
-    for node in lattice.fields().divided_nodes() {
-        add_points_of_node(lattice, node, cracks, &forks, &mut points);
-    }
-    points
+/// Numbers of the points of all cracks.
+fn lengths(cracks: &Cracks) -> Vec<usize> {
+    cracks.iter().map(|crack| crack.points.len()).collect()
 }
 
-fn add_points_of_node(
-    lattice: &Lattice,
-    node: usize,
-    cracks: &Cracks,
-    forks: &[(Point, Stretch)],
-    points: &mut Vec<MeetingPoint>,
-) {
+/// A node nearer to its foot than this, in cells, is not nearer to what has come since it was laid beyond where
+/// something has changed.
+const BESIDE: f64 = 2.0;
+
+/// Two distances that differ by more than this, in cells, differ by more than round-off.
+const CLEARLY: f64 = 1e-6;
+
+/// What tells after a change whether what a node has been laid with is what it would be laid with now.
+struct Stays {
+    /// Nodes of which a field has got mass, or has lost all, rising, and where they are [m].
+    turned: Vec<(usize, Point)>,
+    /// Of each crack, the segments that have come since or of which the end of the crack has moved on: so many at its
+    /// start, and so many at its end; none where that is not known.
+    changed: Vec<Option<[usize; 2]>>,
+}
+
+impl Stays {
+    /// `lengths`: how many points cracks had when nodes were laid last.
+    fn new(near: &Near, turned: &[usize], lengths: &[usize], lattice: &Lattice, cracks: &Cracks) -> Self {
+        let mut turned: Vec<(usize, Point)> = turned.iter().map(|&node| (node, lattice.grid.position(node))).collect();
+        turned.sort_unstable_by_key(|of| of.0);
+        turned.dedup_by_key(|of| of.0);
+        // Around forks what is nearest is not all that counts.
+        let has_forks = !cracks.forks().is_empty();
+        let changed = |(index, crack): (usize, &Crack)| {
+            let before = *lengths.get(index)?;
+            let at_start = near.shift(index) as usize;
+            let at_end = crack.points.len().checked_sub(before + at_start)?;
+            // Of so few points it may not be known where they were added.
+            let is_known = before >= 4 && !has_forks;
+            is_known.then_some([at_start + 1, at_end + 1])
+        };
+        Self { turned, changed: cracks.iter().enumerate().map(changed).collect() }
+    }
+
+    /// Whether a node keeps its `points` and what is `idle` of it, the numbers of whose segments are those of now.
+    fn of_node(&self, node: usize, points: &[MeetingPoint], idle: &[Idle], lattice: &Lattice, cracks: &Cracks) -> bool {
+        if self.turned.binary_search_by_key(&node, |of| of.0).is_ok() {
+            return false;
+        }
+        let place = lattice.grid.position(node);
+        // Of what faces across the same crack the first would take over all forces.
+        let is_alone = |(k, point): (usize, &MeetingPoint)| points[..k].iter().all(|other| other.crack != point.crack);
+        let feet = points.iter().map(|of| (of.crack, of.segment, of.place));
+        let mut feet = feet.chain(idle.iter().map(|of| (of.crack, of.segment, of.place)));
+        points.iter().enumerate().all(is_alone)
+            && feet.all(|(crack, segment, foot)| {
+                self.of_foot((place, foot), &cracks[crack as usize], (crack, segment), lattice)
+            })
+    }
+
+    /// Whether the foot of a node at `place` on a segment of a crack is where it was, with what faces each other around
+    /// it.
+    fn of_foot(
+        &self,
+        (place, foot): (Point, Point),
+        line: &Crack,
+        (crack, segment): (u32, u32),
+        lattice: &Lattice,
+    ) -> bool {
+        let Some([at_start, at_end]) = self.changed[crack as usize] else { return false };
+        let (count, segment, h) = (line.points.len() - 1, segment as usize, lattice.grid.cell_size);
+        let Some(last) = count.checked_sub(at_end) else { return false };
+        let distance = (place - foot).norm();
+        if segment < at_start || segment >= last || distance >= BESIDE * h {
+            return false;
+        }
+        let is_farther = |k: usize| {
+            fissure_plane::distance_to_segment(place, line.points[k], line.points[k + 1]) > distance + CLEARLY * h
+        };
+        let stencil = (lattice.reach() + CLEARLY) * h;
+        (0..at_start).chain(last..count).all(is_farther)
+            && self.turned.iter().all(|(_, turned)| (turned - foot).amax() > stencil)
+    }
+}
+
+/// The points of all nodes.
+fn all_points(lattice: &Lattice, cracks: &Cracks) -> Laid {
+    let forks = cracks.forks();
+    let mut laid = Laid::default();
+    for node in lattice.fields().divided_nodes() {
+        add_points_of_node(lattice, node, cracks, &forks, &mut laid);
+    }
+    laid
+}
+
+fn add_points_of_node(lattice: &Lattice, node: usize, cracks: &Cracks, forks: &[(Point, Stretch)], laid: &mut Laid) {
     let place = lattice.grid.position(node);
     let facing: Vec<_> = lattice.fields().facing_pairs(&lattice.fields_with_mass(node)).collect();
     for pair in &facing {
@@ -638,21 +756,23 @@ fn add_points_of_node(
         let foot = foot_on(line, segment, place);
         // Where a node has several pairs across one crack, none of those around it is known to be the same faces.
         let is_alone = facing.iter().filter(|other| other.crack == crack).count() == 1;
-        let around = if is_alone { facing_fields_at(lattice, crack, foot) } else { Vec::new() };
+        let around = if is_alone { facing_fields_at(lattice, crack, foot) } else { SmallVec::new() };
         let [above, below] = pair.above_and_below();
         let sees_own = around.iter().any(|other| (other.above, other.below) == (above, below));
         // A node so far from the crack that it has no weight at its foot is held apart where it has some: at the feet
         // of nodes nearer to it.
+        let (node, segment) = (node as u32, segment as u32);
         if !sees_own && !around.is_empty() {
+            laid.idle.push(Idle { node, crack, segment, place: foot });
             continue;
         }
-        let fields = if sees_own { around } else { vec![FacingFields { above, below, weight: 1.0 }] };
-        points.push(MeetingPoint {
-            node: node as u32,
+        let fields = if sees_own { around } else { smallvec![FacingFields { above, below, weight: 1.0 }] };
+        laid.points.push(MeetingPoint {
+            node,
             crack,
-            segment: segment as u32,
+            segment,
             place: foot,
-            fields: fields.into(),
+            fields,
             modulus: modulus_around(lattice, foot),
             force: Vector::zeros(),
             on_faces: 1.0,
@@ -679,10 +799,10 @@ fn foot_on(line: &Crack, segment: usize, place: Point) -> Point {
 
 /// The fields that face each other across a crack around a `place` on it, with their weights there; nodes where several
 /// pairs do have no part.
-fn facing_fields_at(lattice: &Lattice, crack: u32, place: Point) -> Vec<FacingFields> {
+fn facing_fields_at(lattice: &Lattice, crack: u32, place: Point) -> SmallVec<[FacingFields; 4]> {
     let stencil = lattice.stencil(place);
     let nodes = lattice.grid.stencil(&stencil);
-    let mut fields = Vec::with_capacity(4);
+    let mut fields = SmallVec::new();
     for (b, a) in (0..stencil.width).flat_map(|b| (0..stencil.width).map(move |a| (b, a))) {
         let weight = stencil.weight(a, b);
         let Some(node) = nodes.at(a, b).filter(|_| weight > 0.0) else { continue };

@@ -42,6 +42,8 @@ pub(super) struct Lattice {
     pub(super) least_mass: f64,
     /// One over the mass of each field [m/kg]; zero where there is none.
     pub(super) inverse_mass: Vec<f64>,
+    /// Particles that were cut anew last.
+    pub(super) recut: Vec<usize>,
     /// Nodes of which a field has got mass, or has lost all, since this was last asked for.
     pub(super) turned: Vec<usize>,
     kernel: Kernel,
@@ -65,6 +67,14 @@ pub(super) struct Layout {
     pub(super) runs: Vec<Vec<Run>>,
     /// Particles that ride on others: see [`super::riders`].
     pub(super) riders: Riders,
+}
+
+/// What [`Lattice::may_have_changed`] has told, and of which cell and nodes. Places that follow each other mostly share
+/// theirs.
+#[derive(Debug)]
+pub(super) struct LastTold {
+    of: ((i64, i64), Point, Point),
+    may_have_changed: bool,
 }
 
 impl Lattice {
@@ -115,6 +125,7 @@ impl Lattice {
             ),
             layout,
             inverse_mass: Vec::new(),
+            recut: Vec::new(),
             turned: Vec::new(),
             kernel,
             tip_division,
@@ -139,9 +150,22 @@ impl Lattice {
     }
 
     /// Whether pairs of `place`, told a hair beside it at `nudged`, may be divided otherwise than before `changes`.
-    pub(super) fn may_have_changed(&self, changes: &Changes, place: Point, nudged: Point) -> bool {
+    /// `last`: what was told last.
+    pub(super) fn may_have_changed(
+        &self,
+        changes: &Changes,
+        place: Point,
+        nudged: Point,
+        last: &mut Option<LastTold>,
+    ) -> bool {
         let (low, high) = self.nodes_seen_from(place);
-        self.division.may_have_changed(changes, nudged, low.inf(&nudged), high.sup(&nudged))
+        let of = (self.division.key(nudged), low.inf(&nudged), high.sup(&nudged));
+        if let Some(last) = last.as_ref().filter(|last| last.of == of) {
+            return last.may_have_changed;
+        }
+        let may_have_changed = self.division.may_have_changed(changes, nudged, of.1, of.2);
+        *last = Some(LastTold { of, may_have_changed });
+        may_have_changed
     }
 
     /// The shares of a pair of `place`, which belongs to `body`, and a node at `node`. A crack goes on beyond its
@@ -163,7 +187,7 @@ impl Lattice {
         }
         let mut own = Shares::new();
         for mut share in shares {
-            share.crossed.retain(|&(crack, _)| is_own(crack));
+            share.crossed.retain(|&mut (crack, _)| is_own(crack));
             match own.iter_mut().find(|other| other.crossed == share.crossed) {
                 Some(other) => {
                     other.fraction += share.fraction;

@@ -137,7 +137,8 @@ impl Look<'_> {
         let center = (tip - particles.anchor) / s;
         let reach = (radius / s).ceil() as i32 + 1;
         let center = [center.x.floor() as i32, center.y.floor() as i32];
-        let mut found: Vec<(usize, Matrix, ParticleRates)> = Vec::new();
+        let across = 2 * reach.clamp(0, 64) as usize + 2;
+        let mut found: Vec<(usize, Matrix, ParticleRates)> = Vec::with_capacity(across * across);
         let mut mean = Matrix::zeros();
         let mut reader = lattice.reader();
         let (low, high) = (center.map(|c| c.saturating_sub(reach)), center.map(|c| c.saturating_add(reach)));
@@ -154,7 +155,7 @@ impl Look<'_> {
         let back = rotation.transpose();
         let (_, back_minus_one) = turn(2.0 + mean.m11 + mean.m22, mean.m12 - mean.m21);
         let frame = Matrix::new(ahead.x, ahead.y, -ahead.y, ahead.x);
-        let mut points = Vec::with_capacity(found.len());
+        let mut points = Vec::with_capacity(found.len() + 8 * across);
         for (p, h, rates) in found {
             let e = lattice.material(p);
             let into = |m: Matrix| frame * m * frame.transpose();
@@ -195,11 +196,8 @@ impl Look<'_> {
         let wanted = 1.5 * self.lattice.grid.cell_size;
         let n = line.points.len();
         let mut distance = 0.0;
-        let order: Vec<usize> = match id.end {
-            End::End => (0..n).rev().collect(),
-            End::Start => (0..n).collect(),
-        };
-        for w in order.windows(2) {
+        let from_tip = |k: usize| if id.end == End::End { n - 1 - k } else { k };
+        for w in (0..n - 1).map(|k| [from_tip(k), from_tip(k + 1)]) {
             let (from, to) = (line.points[w[0]], line.points[w[1]]);
             let length = (to - from).norm();
             if distance + length >= wanted {

@@ -343,12 +343,13 @@ impl Solver for Total {
             boxes.extend(around);
         }
         let turned = std::mem::take(&mut self.lattice.turned);
-        let has_mouthed = self.probes.refresh(&self.lattice, cracks, changed, (&changes, &boxes), &turned);
+        let has_mouthed = self.probes.refresh(&self.lattice, cracks, changed, (&changes, &boxes));
         let near = Near::new(&self.lattice, &boxes, shifts);
         self.loads.refresh(&near, &self.scene, &self.lattice, cracks);
         self.colliders.refresh(&near, &self.lattice);
-        self.contacts.refresh(&near, &self.lattice, cracks);
-        let retied = self.ties.refresh(&near, &self.lattice, &self.motion, cracks);
+        self.contacts.refresh(&near, &turned, &self.lattice, cracks);
+        let recut = (boxes.len() == changes.boxes.len()).then_some(&self.lattice.recut[..]);
+        let retied = self.ties.refresh(&near, recut, &self.lattice, &self.motion, cracks);
         self.supports.refresh(&near, &self.scene, &self.lattice, (&self.ties, &retied));
         self.touching.change(&near, has_mouthed);
         held - self.ties.held(&self.motion) + lost

@@ -48,6 +48,20 @@ impl Near {
         self.boxes.iter().map(move |(low, high)| (low - by, high + by))
     }
 
+    /// The nodes with further fields within `reach` [m] of where something has changed, rising.
+    pub(super) fn divided_nodes(&self, lattice: &Lattice, reach: f64) -> Vec<usize> {
+        let mut nodes: Vec<usize> = Vec::new();
+        for (low, high) in self.widened(reach) {
+            let around =
+                lattice.grid.nodes_around(low, high).filter(|&(node, _)| !lattice.fields().of(node).is_empty());
+            let is_inside = |place: Point| place >= low && place <= high;
+            nodes.extend(around.filter(|&(_, place)| is_inside(lattice.grid.place(place))).map(|(node, _)| node));
+        }
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+
     /// The fields where something has changed, rising, with the places of their nodes at rest [m].
     pub(super) fn fields(&self, lattice: &Lattice) -> Vec<(usize, Point)> {
         let mut nodes: Vec<(usize, Point)> = Vec::new();

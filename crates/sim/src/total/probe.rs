@@ -7,6 +7,10 @@ use crate::faces::outlines::Vertex;
 use crate::saved::{self, Fits};
 use fissure_plane::{Point, Vector};
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
+
+/// (field, weight) of a probe: hardly ever more than four.
+pub(super) type ProbeEntries = SmallVec<[(u32, f64); 4]>;
 
 /// A place at rest that rides on the material of a body: a vertex of an outline, a point of a crack face, a place of a
 /// load.
@@ -19,7 +23,7 @@ pub(super) struct Probe {
     /// The body.
     pub(super) body: u32,
     /// (field, weight).
-    pub(super) entries: Vec<(u32, f64)>,
+    pub(super) entries: ProbeEntries,
     /// Whether these are fields of the nodes around it. They stay what they are while nothing changes there; what is
     /// carried on from a particle may change with what is farther off, as may what has been read.
     #[serde(skip)]
@@ -48,6 +52,12 @@ impl Probe {
             self.rest.iter().chain(self.nudged.iter()).chain(self.entries.iter().map(|(_, w)| w)),
         )?;
         saved::below("a probe", self.entries.iter().map(|(field, _)| *field), fields)
+    }
+
+    /// Whether a field of it has lost all its mass: what is local stays what it is while none has, and nothing around
+    /// is divided otherwise.
+    pub(super) fn has_lost_material(&self, lattice: &Lattice) -> bool {
+        self.entries.iter().any(|&(field, _)| lattice.mass()[field as usize] <= 0.0)
     }
 
     /// Value of a field vector at the probe.
@@ -81,7 +91,7 @@ impl Lattice {
     /// (field, weight) of a probe. Where a node has no material on the probe's side, the fields of the nearest
     /// particle's cell are carried on to the probe instead; near a crack linearly: w_ip + ∇w_ip · (X − X_p), exact for
     /// rigid motion.
-    pub(super) fn probe_entries(&self, body: u32, rest: Point, nudged: Point) -> Vec<(u32, f64)> {
+    pub(super) fn probe_entries(&self, body: u32, rest: Point, nudged: Point) -> ProbeEntries {
         let local = self.local_entries(body, rest, nudged);
         local.map_or_else(|| self.carried_entries(body, rest, nudged), |(entries, _)| entries)
     }
@@ -89,7 +99,7 @@ impl Lattice {
     /// As [`Lattice::probe_entries`], and whether they depend on nothing but what is around: beyond a junction pairs
     /// are parted by what the crack does that was met there, wherever it does it. None where a node has no material on
     /// the probe's side.
-    fn local_entries(&self, body: u32, rest: Point, nudged: Point) -> Option<(Vec<(u32, f64)>, bool)> {
+    fn local_entries(&self, body: u32, rest: Point, nudged: Point) -> Option<(ProbeEntries, bool)> {
         let stencil = self.stencil(rest);
         let nodes = self.grid.stencil(&stencil);
         let mass = |field: usize| self.layout.mass[field];
@@ -99,7 +109,7 @@ impl Lattice {
             let all = std::iter::once(node).chain(fields.of(node).iter().map(|&field| field as usize));
             all.into_iter().any(|field| mass(field) > 0.0 && fields.guest(field) == guest(node))
         };
-        let mut entries = Vec::with_capacity(8);
+        let mut entries = ProbeEntries::new();
         let last = stencil.width - 1;
         let around = self.division.around(nudged, nodes.place(0, 0), nodes.place(last, last));
         let mut is_local = !around.is_beyond_junction();
@@ -127,7 +137,7 @@ impl Lattice {
         Some((entries, is_local))
     }
 
-    fn carried_entries(&self, body: u32, rest: Point, nudged: Point) -> Vec<(u32, f64)> {
+    fn carried_entries(&self, body: u32, rest: Point, nudged: Point) -> ProbeEntries {
         let at = (rest - self.particles.anchor) / self.particles.spacing;
         let center = [at.x.floor() as i32, at.y.floor() as i32];
         let mut nearest = None;
@@ -145,9 +155,9 @@ impl Lattice {
                 break;
             }
         }
-        let Some(p) = nearest else { return Vec::new() };
+        let Some(p) = nearest else { return ProbeEntries::new() };
         let offset = rest - self.particles.rest[p];
-        let mut entries = Vec::with_capacity(8);
+        let mut entries = ProbeEntries::new();
         if !self.division.is_near(self.particles.rest[p]) {
             // What the fields of its cell are beyond it.
             let stencil = self.stencil(self.particles.rest[p]);

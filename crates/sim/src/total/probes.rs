@@ -37,7 +37,7 @@ impl Lattice {
         crack: &Crack,
         faces: &mut Faces,
         boxes: &[(Point, Point)],
-        has_changed: impl Fn(&Probe) -> bool,
+        mut has_changed: impl FnMut(&Probe) -> bool,
     ) {
         let points = &crack.points;
         // Where nothing is known to have stayed, all is laid anew.
@@ -145,21 +145,18 @@ impl Probes {
     }
 
     /// Lays the probes anew that may have changed: of the faces of cracks with a `changed` end, and of all within
-    /// `boxes`, of which those beyond the ones of `changes` hold particles that ride on others now. `turned`: nodes of
-    /// which a field has got mass, or has lost all. Returns whether an outline has got a mouth.
+    /// `boxes`, of which those beyond the ones of `changes` hold particles that ride on others now.
+    /// Returns whether an outline has got a mouth.
     pub(super) fn refresh(
         &mut self,
         lattice: &Lattice,
         cracks: &Cracks,
         changed: &[TipId],
         (changes, boxes): (&Changes, &[(Point, Point)]),
-        turned: &[usize],
     ) -> bool {
         let ridden = &boxes[changes.boxes.len()..];
         let within = |boxes: &[(Point, Point)], p: Point| boxes.iter().any(|(low, high)| p >= *low && p <= *high);
         let seen = Vector::repeat(SEEN * lattice.grid.cell_size);
-        let turned: Vec<Point> = turned.iter().map(|&node| lattice.grid.position(node)).collect();
-        let stencil = (lattice.reach() + 0.5) * lattice.grid.cell_size;
         // A node that has turned is as far as a stencil from what has been cut anew, and seen from as far.
         let reach = Vector::repeat(SEEN.max(2.0 * lattice.reach() + 2.0) * lattice.grid.cell_size);
         let suspicious: Vec<(Point, Point)> = boxes.iter().map(|(low, high)| (low - reach, high + reach)).collect();
@@ -176,17 +173,15 @@ impl Probes {
             // Of all that has changed, most is far from most cracks.
             let meets = |&(low, high): &(Point, Point)| crack.may_meet(low - seen, high + seen);
             let around: Vec<(Point, Point)> = boxes.iter().copied().filter(meets).collect();
-            let by = Vector::repeat(stencil);
-            let turned: Vec<Point> =
-                turned.iter().copied().filter(|node| crack.may_meet(node - by, node + by)).collect();
+            let mut last = None;
             lattice.follow_faces(crack, faces, &near, |probe| {
                 if !probe.is_local {
                     return around.iter().any(|(low, high)| probe.rest >= low - seen && probe.rest <= high + seen);
                 }
-                turned.iter().any(|node| (node - probe.rest).amax() < stencil)
+                probe.has_lost_material(lattice)
                     || within(ridden, probe.rest)
                     || (within(&around, probe.nudged) || within(&around, probe.rest))
-                        && lattice.may_have_changed(changes, probe.rest, probe.nudged)
+                        && lattice.may_have_changed(changes, probe.rest, probe.nudged, &mut last)
             });
         }
         for probe in self.outlines.vertices_mut().filter(|probe| within(boxes, probe.rest)) {
@@ -226,18 +221,28 @@ impl Probes {
         added
     }
 
+    /// How far the two faces of a crack have moved at one of its points, in the mean [m].
+    pub(super) fn mean_at([above, below]: &Faces, point: usize, motion: &Motion) -> Vector {
+        let u = &motion.displacement;
+        (above[point].value(u) + below[point].value(u)) * 0.5
+    }
+
     /// Normal of a segment of a crack now, from below to above: across the mean of the two faces. None where it has no
     /// length.
+    #[cfg(test)]
     pub(super) fn segment_normal(&self, crack: u32, segment: u32, motion: &Motion) -> Option<Vector> {
-        let [above, below] = &self.faces[crack as usize];
+        let faces = &self.faces[crack as usize];
         let s = segment as usize;
-        let (from, to) = (above.get(s)?, above.get(s + 1)?);
-        let u = &motion.displacement;
-        let mean = |k: usize| (above[k].value(u) + below[k].value(u)) * 0.5;
-        let tangent = (to.rest - from.rest) + (mean(s + 1) - mean(s));
-        let length = tangent.norm();
-        (length > 0.0).then(|| Vector::new(-tangent.y, tangent.x) / length)
+        let (from, to) = (faces[0].get(s)?, faces[0].get(s + 1)?);
+        let [before, after] = [s, s + 1].map(|k| Self::mean_at(faces, k, motion));
+        normal_across((to.rest - from.rest) + (after - before))
     }
+}
+
+/// Unit vector to the left of a way; none where that has no length.
+pub(super) fn normal_across(tangent: Vector) -> Option<Vector> {
+    let length = tangent.norm();
+    (length > 0.0).then(|| Vector::new(-tangent.y, tangent.x) / length)
 }
 
 #[cfg(test)]

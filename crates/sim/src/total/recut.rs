@@ -72,15 +72,10 @@ impl Lattice {
         let mut affected: Vec<usize> = Vec::new();
         for &(low, high) in &of.boxes {
             // Those that no crack is near any more become whole again. Where a tip divides, all move.
-            // The particles of a cell see the same nodes.
-            let mut last: Option<([i32; 2], bool)> = None;
+            let mut last = None;
             let mut may_be_cut_anew = |p: usize| {
                 let place = self.particles.rest[self.layout.riders.host(p).unwrap_or(p)];
-                let cell = self.stencil(place).first;
-                let known = last.filter(|known| known.0 == cell).map(|known| known.1);
-                let found = known.unwrap_or_else(|| self.may_have_changed(of, place, place));
-                last = Some((cell, found));
-                found
+                self.may_have_changed(of, place, place, &mut last)
             };
             let around = self.particles.in_box(low, high);
             affected.extend(around.filter(|&p| (divides || may_be_cut_anew(p)) && !self.is_whole(p)));
@@ -118,7 +113,9 @@ impl Lattice {
         let before = self.held_by(&changed, motion);
         let lost = self.move_weights(&changes, divides, motion);
         self.put_strained(parts, motion);
-        lost + before - self.held_by(&changed, motion)
+        let lost = lost + before - self.held_by(&changed, motion);
+        self.recut = changed;
+        lost
     }
 
     /// Whether a particle has these parts already, and mass in each of their fields: then none of them is new to it.

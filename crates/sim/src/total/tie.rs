@@ -143,6 +143,13 @@ impl Tie {
         tie
     }
 
+    /// The same tie as [`Tie::new`] makes it for fields that are as stiff as before, and a tip `ahead` cells before it.
+    pub(super) fn laid_anew(&self, ahead: f64) -> Self {
+        let mut tie = Self { rest: Vector::zeros(), dragged: 0.0, ..*self };
+        tie.soften(ahead);
+        tie
+    }
+
     /// Checks a tie that was read against so many `fields` and `nodes`.
     ///
     /// # Errors

@@ -129,7 +129,7 @@ impl Ties {
     /// The ties of all tips.
     pub(super) fn new(lattice: &Lattice, motion: &Motion, cracks: &Cracks) -> Self {
         let mut ties = Self::default();
-        ties.lay_where(lattice, motion, cracks, |_| true);
+        ties.lay_where(lattice, motion, cracks, |_| true, |_| false);
         ties
     }
 
@@ -159,10 +159,24 @@ impl Ties {
     }
 
     /// Lays the ties anew of tips whose ties reach to where something has changed: a field that has lost its mass, to
-    /// another crack maybe, cannot be tied. Gives the fields whose inertia is another one.
-    pub(super) fn refresh(&mut self, near: &Near, lattice: &Lattice, motion: &Motion, cracks: &Cracks) -> Vec<u32> {
+    /// another crack maybe, cannot be tied. `recut`: the particles of which parts see other nodes than before; none
+    /// where these are not all known. Gives the fields whose inertia is another one.
+    pub(super) fn refresh(
+        &mut self,
+        near: &Near,
+        recut: Option<&[usize]>,
+        lattice: &Lattice,
+        motion: &Motion,
+        cracks: &Cracks,
+    ) -> Vec<u32> {
         let reach = (WINDOW.hypot(WINDOW) + 1.0) * lattice.grid.cell_size;
-        self.lay_where(lattice, motion, cracks, |tip| near.is_within(tip, reach))
+        // Particles are looked for in a box that may be a row larger.
+        let seen = lattice.reach() * lattice.grid.cell_size + 2.0 * lattice.particles.spacing;
+        let is_as_before = |node: Point| {
+            let is_far = |&p: &usize| (lattice.particles.rest[p] - node).amax() > seen;
+            recut.is_some_and(|recut| recut.iter().all(is_far))
+        };
+        self.lay_where(lattice, motion, cracks, |tip| near.is_within(tip, reach), is_as_before)
     }
 
     fn lay_where(
@@ -171,6 +185,7 @@ impl Ties {
         motion: &Motion,
         cracks: &Cracks,
         is_changed: impl Fn(Point) -> bool,
+        is_as_before: impl Fn(Point) -> bool,
     ) -> Vec<u32> {
         if !lattice.has_ties() {
             return Vec::new();
@@ -178,8 +193,8 @@ impl Ties {
         let mut changed = BTreeSet::new();
         for id in cracks.ids().filter(|&id| is_changed(cracks.position(id))) {
             let is_tip = cracks.end(id) == CrackEnd::Tip;
-            let asked = if is_tip { ties_at(lattice, cracks, id) } else { Vec::new() };
             let before = self.of_tip.remove(&id).unwrap_or_default();
+            let asked = if is_tip { ties_at(lattice, cracks, id, &before, &is_as_before) } else { Vec::new() };
             let mut ties = Vec::with_capacity(asked.len());
             for &(mut tie) in &asked {
                 let same = same_tie(&tie, &asked, &before);
@@ -352,8 +367,15 @@ fn same_tie<'t>(tie: &Tie, all: &[Tie], before: &'t [Tie]) -> Option<&'t Tie> {
     same.or_else(|| before.iter().find(|b| b.node == tie.node).filter(|_| is_only(all) && is_only(before)))
 }
 
-/// The ties that a tip should have where it is now.
-fn ties_at(lattice: &Lattice, cracks: &Cracks, id: TipId) -> Vec<Tie> {
+/// The ties that a tip should have where it is now. `before`: those that it has had; where the particles around a node
+/// are as they were (`is_as_before`), its fields withstand as they did.
+fn ties_at(
+    lattice: &Lattice,
+    cracks: &Cracks,
+    id: TipId,
+    before: &[Tie],
+    is_as_before: &impl Fn(Point) -> bool,
+) -> Vec<Tie> {
     let h = lattice.grid.cell_size;
     let (tip, direction) = (cracks.position(id), cracks.last_direction(id));
     let [middle_column, middle_row] = lattice.grid.cell(tip);
@@ -370,14 +392,15 @@ fn ties_at(lattice: &Lattice, cracks: &Cracks, id: TipId) -> Vec<Tie> {
                 continue;
             }
             let fields = lattice.fields_with_mass(node);
-            let rigidities: Vec<Rigidity> = fields.iter().map(|&field| Rigidity::of(lattice, field, place)).collect();
-            let of = |field: u32| {
-                fields.iter().zip(&rigidities).find(|f| *f.0 == field).map_or(Rigidity::default(), |f| *f.1)
-            };
             let facing = lattice.fields().facing_pairs(&fields).filter(|pair| pair.crack as usize == id.crack);
+            let is_as_before = is_as_before(place);
             ties.extend(facing.map(|pair| {
                 let fields = pair.above_and_below();
-                let [above, below] = fields.map(of);
+                let same = before.iter().find(|tie| [tie.first, tie.second] == fields);
+                if let Some(same) = same.filter(|_| is_as_before) {
+                    return same.laid_anew(ahead);
+                }
+                let [above, below] = fields.map(|field| Rigidity::of(lattice, field, place));
                 let crossing = h / above.wave_speed.max(below.wave_speed);
                 Tie::new(fields, (node as u32, place), [above.stiffness, below.stiffness], crossing, ahead)
             }));
