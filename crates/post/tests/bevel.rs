@@ -10,6 +10,9 @@ use fissure_scene::{CrackEnd, Cut, Frame, Point, Scene, Vector};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 
+/// Of the grid on which all that reaches 20 m from the origin is exact in single precision [m]: `f32` has 24 bits.
+const STEP: f64 = 32.0 / 16_777_216.0;
+
 /// The solids with sharp and with bevelled edges.
 fn solids(scene: &Scene, frame: &Frame, bevel: f64) -> [Vec<Mesh>; 2] {
     let sharp = PostOptions { thickness: 3.0, ..options(scene) };
@@ -64,7 +67,7 @@ proptest! {
     /// Truth: what is promised of caps. Bevelled ones have hardly a narrower angle than sharp ones.
     #[test]
     fn caps_within_bevels_have_no_needles(
-        trunk in proptest::collection::vec(-0.4..0.4_f64, 10..40), bevel in 0.05..0.3_f64,
+        trunk in proptest::collection::vec(-0.4..0.4_f64, 10..40), bevel in 0.05..0.3_f64
     ) {
         let rest = path(Point::new(10.0, 0.0), Point::new(10.0, SIZE), &trunk);
         let moved = |x: f64| vec![Vector::new(x, 0.0); rest.len()];
@@ -84,7 +87,9 @@ proptest! {
     }
 
     /// Truth: closed form. Along a straight wall of length L in segments of length s, bevels of width w take off two
-    /// prisms of area w²/2, which end in pyramids within the first and the last segment: w² (L − 4 s/3).
+    /// prisms of area w²/2, which end in pyramids within the first and the last segment: w² (L − 4 s/3). In the plane
+    /// strips end on the grid, so one of both widths is a whole number of its steps, which in a bevel of 16 mm on 20 m
+    /// is up to 6e-5 of what they take off.
     #[test]
     fn bevels_take_off_two_prisms(parts in 10_usize..30, part_of_segment in 0.01..0.2_f64) {
         let rest = path(Point::new(10.0, 0.0), Point::new(10.0, SIZE), &vec![0.0; parts + 1]);
@@ -97,12 +102,15 @@ proptest! {
         frame.particles.piece = frame.particles.rest.iter().map(|x| u32::from(x.x > 10.0)).collect();
         let segment = SIZE / parts as f64;
         let bevel = part_of_segment * segment;
+        let on_grid = (bevel / STEP).round() * STEP;
         let [before, after] = solids(&scene(region), &frame, bevel);
         prop_assert_eq!(after.len(), 2);
         for (before, after) in before.iter().zip(&after) {
-            let removed = (before.volume() - after.volume()) / (bevel * bevel);
-            // Segments are halved at most where caps need it.
-            let range = SIZE - 4.0 / 3.0 * segment - 1e-3..SIZE - 2.0 / 3.0 * segment + 1e-3;
+            let removed = (before.volume() - after.volume()) / (bevel * on_grid);
+            // Segments are halved at most where caps need it. New corners in the first and last ones, where strips
+            // become narrow, go to the grid inwards.
+            let rounding = segment * STEP / bevel;
+            let range = SIZE - 4.0 / 3.0 * segment - rounding..SIZE - 2.0 / 3.0 * segment + rounding;
             prop_assert!(range.contains(&removed), "{} in {:?}", removed, range);
         }
     }
