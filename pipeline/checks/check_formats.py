@@ -311,6 +311,8 @@ def check_obj(folder, records):
             if not abs(volume / record["volume"] - 1) <= RELATIVE:
                 yield record["file"], f"volume {volume} instead of {record['volume']}"
             for name, mesh in scene.geometry.items():
+                # trimesh merges within 1e-8, whatever the size: the shortest side becomes 1.
+                mesh.apply_scale(1 / mesh.extents.min())
                 mesh.merge_vertices(merge_tex=True, merge_norm=True)
                 if not mesh.is_watertight:
                     yield record["file"], f"{name} is open"
