@@ -395,6 +395,29 @@ fn guides_that_nothing_follows_are_told_of() {
     assert!(told[0].message.contains("`side`: it ends 1 m from the nearest one, `trunk`"), "{}", told[0].message);
 }
 
+/// Truth: the construction, two cracks that leave 6 mm of a plate of particles of 20 mm, none when one ends on the
+/// other, at the outline or as a tip.
+#[test]
+fn a_bridge_without_a_particle_is_warned_of() {
+    let told = |second: &str, tips: &str| {
+        let text = format!(
+            "[[body]]\nname = 'plate'\nmaterial = 'pmma'\nshape = {{ rectangle = {{ min = [0, 0], max = [1, 1] }} }}\n\
+             [grid]\nparticle_spacing = 0.02\n\
+             [[crack]]\nname = 'left'\nline = [[-0.1, 0.5], [0.497, 0.5]]\ntips = '{tips}'\n\
+             [[crack]]\nname = 'right'\nline = [{second}]\ntips = 'none'\n"
+        );
+        let loaded = load_with_warnings(&Folder::new(&text, None).path(), &[]).unwrap();
+        let about = |w: &fissure_scene::Warning| w.message.contains("no particle lies between");
+        loaded.warnings.iter().filter(|w| about(w)).map(|w| w.message.clone()).collect::<Vec<_>>()
+    };
+    let both = told("[0.503, 0.5], [1.1, 0.5]", "none");
+    assert_eq!(both.len(), 2, "{both:?}");
+    assert!(both[0].contains("`left`") && both[0].contains("6.00e-3 m from crack `right`"), "{}", both[0]);
+    assert_eq!(told("[0.503, 0.5], [1.1, 0.5]", "end").len(), 1);
+    assert_eq!(told("[0.3, 0.5], [0.3, 1.1]", "none"), Vec::<String>::new());
+    assert_eq!(told("[0.54, 0.5], [1.1, 0.5]", "none"), Vec::<String>::new());
+}
+
 /// Truth: the construction, two plates of 10 mm joined by a neck of 0.4 mm at a spacing of 1 mm.
 #[test]
 fn a_narrow_neck_is_warned_of_with_its_line() {

@@ -1,6 +1,7 @@
 //! Turns what a user wrote into a [`Scene`]: names become indices, shapes become regions, defaults become numbers.
 
 mod bodies;
+mod bridges;
 mod chord_error;
 mod cracks;
 mod crumbs;
@@ -149,6 +150,7 @@ impl<'d> Resolver<'d> {
         scene.validate().map_err(|fault| self.origin.in_document(fault))?;
         self.short_cracks(&scene);
         self.ligaments(&scene);
+        self.bridges(&scene);
         Ok(scene)
     }
 
