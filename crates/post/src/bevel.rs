@@ -36,9 +36,9 @@ const FOLDED: f64 = -0.95;
 /// Triangles of caps keep this part of their area.
 const KEPT: f64 = 0.25;
 /// A width that leaves no room is narrowed to this part of it.
-const NARROWED: f64 = 0.7;
+pub(crate) const NARROWED: f64 = 0.7;
 /// So many grid steps would be lost in rounding.
-const LOST: f64 = 2.0;
+pub(crate) const LOST: f64 = 2.0;
 
 /// What a strip becomes that has no room.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -123,11 +123,6 @@ impl Extrusion<'_> {
         self.corners(cap, &widths, &ways)
     }
 
-    /// How wide bevels are at the corners of a cap [m]; 0 where there are none.
-    pub(crate) fn bevel_widths(&self, cap: &Cap) -> Vec<f64> {
-        self.bevel(cap).iter().map(|corner| corner.drop).collect()
-    }
-
     /// The corners of a cap with bevels of these `widths` [m], narrower where there is no room, but nowhere nothing:
     /// there are strips where there are some at rest.
     pub(crate) fn bevel_like(&self, cap: &Cap, widths: &[f64]) -> Vec<BevelCorner> {
@@ -139,7 +134,7 @@ impl Extrusion<'_> {
     }
 
     /// How wide bevels are to be at the corners of a cap, in grid steps, and where they go for each.
-    fn widths(&self, cap: &Cap) -> (Vec<f64>, Vec<Vector>) {
+    pub(crate) fn widths(&self, cap: &Cap) -> (Vec<f64>, Vec<Vector>) {
         let count = cap.shape.iter().map(Vec::len).sum();
         let (mut widths, mut ways) = (vec![0.0; count], vec![Vector::zeros(); count]);
         let Some(size) = self.bevel else { return (widths, ways) };
@@ -265,7 +260,7 @@ fn moved(point: GridPoint, way: Vector) -> GridPoint {
 
 /// Twice the areas, in squared grid steps, of the two triangles of the strip along an edge whose ends are `p` and `q`
 /// at the cap: a b q and a q p.
-fn areas(edge: &Edge, p: GridPoint, q: GridPoint) -> [f64; 2] {
+pub(crate) fn areas(edge: &Edge, p: GridPoint, q: GridPoint) -> [f64; 2] {
     [twice(edge.a, edge.b, q), twice(edge.a, q, p)]
 }
 

@@ -22,6 +22,7 @@ use crate::overlaps::{Enclosed, share_out_overlaps};
 use crate::pieces::numbers;
 use crate::pinch::part_pinches;
 use crate::relief::Relief;
+use crate::rest_bevel::RestBevel;
 use crate::rest_cut::{RestDivision, rest_cap};
 use crate::short_edges::{Growth, without_short_edges};
 use crate::slivers::{drop_narrow_parts, fill_narrow_holes, without_slivers};
@@ -439,36 +440,57 @@ impl<'a> Solids<'a> {
         caps.retain(|(cap, _)| area(&cap.shape, grid) >= self.options.smallest_fragment);
         let extrusion = self.extrusion(body, &sources);
         let bevels_at_rest = self.bevels_at_rest(&extrusion, &caps, grids[1]);
-        let with_bevel = |((cap, within), widths): ((Cap, Vec<Carried>), Vec<f64>)| SolidCap {
-            bevel: extrusion.bevel_like(&cap, &widths),
-            cap,
-            within,
+        let with_bevel = |((cap, within), at_rest): ((Cap, Vec<Carried>), Vec<BevelCorner>)| {
+            let widths: Vec<f64> = at_rest.iter().map(|corner| corner.drop).collect();
+            SolidCap { bevel: extrusion.bevel_like(&cap, &widths), cap, within }
         };
+        if extrusion.bevel.is_some() && !caps.is_empty() {
+            let mut all = sources.clone();
+            let fine = |(made, at_rest): (&(Cap, Vec<Carried>), &Vec<BevelCorner>)| {
+                let found = extrusion.rest_bevel(&made.0, at_rest, all.len(), division, grids[1], (interior, piece));
+                let Some(RestBevel { cap, corners, within, sources }) = found else {
+                    return with_bevel((made.clone(), at_rest.clone()));
+                };
+                all.extend(sources);
+                SolidCap { cap, bevel: corners, within }
+            };
+            let fine: Vec<SolidCap> = caps.iter().zip(&bevels_at_rest).map(fine).collect();
+            let mesh = self.made(body, piece, &self.extrusion(body, &all), &fine);
+            if (self.check)(&mesh).is_ok() {
+                return Some(Some(mesh));
+            }
+        }
         let mesh = self.mesh(body, piece, &extrusion, caps.into_iter().zip(bevels_at_rest).map(with_bevel).collect());
         mesh.as_ref().is_none_or(|mesh| (self.check)(mesh).is_ok()).then_some(mesh)
     }
 
-    /// How wide the bevels of some caps that were made at rest are [m]: what there is room for there, on this `grid`.
-    fn bevels_at_rest(&self, extrusion: &Extrusion<'_>, caps: &[(Cap, Vec<Carried>)], grid: Grid) -> Vec<Vec<f64>> {
+    /// Where the corners of some caps that were made at rest go there, on this `grid`: as far as there is room.
+    fn bevels_at_rest(
+        &self,
+        extrusion: &Extrusion<'_>,
+        caps: &[(Cap, Vec<Carried>)],
+        grid: Grid,
+    ) -> Vec<Vec<BevelCorner>> {
         let scale = extrusion.grid.step / grid.step;
         let Some(size) = extrusion.bevel else {
-            return caps.iter().map(|(cap, _)| vec![0.0; cap.shape.iter().map(Vec::len).sum()]).collect();
+            let still = |edge: &Edge| BevelCorner { point: edge.a, at_rest: Vector::zeros(), drop: 0.0 };
+            return caps.iter().map(|(cap, _)| cap.shape.iter().flatten().map(still).collect()).collect();
         };
         let ends = |source: &SourceEdge| [0, 1].map(|end| grid.snap(source.carried[end].rest));
         let at_rest = |source: &SourceEdge| SourceEdge { a: ends(source)[0], b: ends(source)[1], ..*source };
         let sources: Vec<SourceEdge> = extrusion.sources.iter().map(at_rest).collect();
         let bevel = BevelSize { width: scale * size.width, least: scale * size.least };
         let of_rest = Extrusion { grid, sources: &sources, bevel: Some(bevel), ..*extrusion };
-        let widths = |(cap, within): &(Cap, Vec<Carried>)| {
+        let corners = |(cap, within): &(Cap, Vec<Carried>)| {
             let edge = |edge: &Edge| {
                 let [a, b] = ends(extrusion.source(edge));
                 Edge { a, b, ..*edge }
             };
             let shape = cap.shape.iter().map(|contour| contour.iter().map(edge).collect()).collect();
             let within = within.iter().map(|carried| grid.snap(carried.rest)).collect();
-            of_rest.bevel_widths(&Cap { shape, within, triangles: cap.triangles.clone() })
+            of_rest.bevel(&Cap { shape, within, triangles: cap.triangles.clone() })
         };
-        caps.iter().map(widths).collect()
+        caps.iter().map(corners).collect()
     }
 
     fn extrusion<'b>(&'b self, body: u32, sources: &'b [SourceEdge]) -> Extrusion<'b> {

@@ -80,6 +80,7 @@ mod provenance;
 #[cfg(feature = "files")]
 mod record;
 mod relief;
+mod rest_bevel;
 mod rest_cut;
 mod rigid;
 mod rough_walls;

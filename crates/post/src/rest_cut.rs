@@ -66,61 +66,32 @@ pub(crate) fn rest_cap(
     piece: u32,
 ) -> Option<RestCap> {
     let [grid, rest_grid] = grids;
-    let (corners, places) = corners(boundaries, rest_grid);
-    let old = places.len();
-    let triangles = triangles(&corners, places, division, rest_grid.step)?;
-    let chains = Chains::new(&triangles, old);
-    let (mut corners_now, mut shape) = (Vec::with_capacity(corners.len()), Shape::with_capacity(corners.len()));
-    let mut outer = Vec::new();
+    let at_rest = |edge: &SourceEdge| edge.carried[0].rest;
+    let places: Vec<Vec<Point>> = boundaries.iter().map(|edges| edges.iter().map(at_rest).collect()).collect();
+    let Divided { new, within, triangles: found } = divided(&places, division, rest_grid)?;
+    let mut shape = Shape::with_capacity(boundaries.len());
+    let mut places = Vec::new();
     let mut source = 0;
-    for (edges, corners) in boundaries.iter().zip(&corners) {
-        let (mut ring, mut contour) = (Vec::with_capacity(edges.len()), Vec::with_capacity(edges.len()));
-        for (i, edge) in edges.iter().enumerate() {
+    for (edges, new) in boundaries.iter().zip(&new) {
+        let mut contour = Vec::with_capacity(edges.len());
+        for (edge, new) in edges.iter().zip(new) {
             let whole = Edge { a: edge.a, b: edge.b, source: SourceIndex(source) };
             source += 1;
-            let [from, to] = [corners[i], corners[(i + 1) % corners.len()]];
             let [start, end] = [0, 1].map(|k| edge.carried[k].rest);
-            ring.push(from);
-            outer.push(start);
+            places.push(start);
             let mut place = edge.a;
-            for &corner in chains.between(from, to)? {
-                let rest = rest_place(&triangles, corner, rest_grid);
-                let part = (rest - start).norm() / (end - start).norm();
-                let [a, b] = [edge.a, edge.b].map(|p| Point2::new(p.x as f64, p.y as f64));
-                let next = inwards(&whole, Point2::new(a.x + part * (b.x - a.x), a.y + part * (b.y - a.y)));
+            for &rest in new {
+                let next = between(&whole, (rest - start).norm() / (end - start).norm());
                 contour.push(Edge { a: place, b: next, ..whole });
-                ring.push(corner);
-                outer.push(rest);
+                places.push(rest);
                 place = next;
             }
             contour.push(Edge { a: place, ..whole });
         }
-        corners_now.push(ring);
         shape.push(contour);
     }
-    let sides = Sides::new(&triangles, &corners_now)?;
-    let mut places = outer.clone();
-    let mut number = BTreeMap::new();
-    let mut found = Vec::with_capacity(sides.faces.len());
-    for (face, corner) in sides.faces {
-        let mut triangle = [0; 3];
-        for (k, vertex) in triangles.face(face).vertices().into_iter().enumerate() {
-            triangle[k] = match corner[k] {
-                Some(corner) => corner,
-                None => match number.get(&vertex.index()) {
-                    Some(&number) => number,
-                    None => {
-                        let rest = rest_place(&triangles, vertex.index(), rest_grid);
-                        places.push(rest);
-                        let new = places.len() as u32 - 1;
-                        number.insert(vertex.index(), new);
-                        new
-                    }
-                },
-            };
-        }
-        found.push(triangle);
-    }
+    let count = places.len();
+    places.extend(within);
     let edges: Vec<&SourceEdge> = boundaries.iter().flatten().collect();
     let told: Vec<[Carried; 2]> =
         shape.iter().flatten().map(|edge| [edge.a, edge.b].map(|p| edges[edge.source.0 as usize].at(p))).collect();
@@ -128,7 +99,6 @@ pub(crate) fn rest_cap(
     let speeds: Vec<Vector> = told.iter().map(|[start, _]| start.velocity).collect();
     let carrying = Carrying { interior, grid, piece, places: &places, triangles: &found };
     let CarriedCorners { now, velocities } = carrying.corners(&shown, &speeds, division.unfolds);
-    let count = outer.len();
     // Each edge tells of itself where it is: new corners and those that follow particles are not where the whole is.
     let (mut sources, mut begin) = (Vec::with_capacity(count), 0);
     for contour in &mut shape {
@@ -138,7 +108,7 @@ pub(crate) fn rest_cap(
             let slot = edges[edge.source.0 as usize].slot;
             let mut carried = told[ends[0]];
             for (carried, end) in carried.iter_mut().zip(ends) {
-                (carried.rest, carried.velocity) = (outer[end], velocities[end]);
+                (carried.rest, carried.velocity) = (places[end], velocities[end]);
             }
             *edge = Edge { a: now[ends[0]], b: now[ends[1]], source: SourceIndex((first + ends[0]) as u32) };
             sources.push(SourceEdge { a: edge.a, b: edge.b, carried, slot });
@@ -150,20 +120,73 @@ pub(crate) fn rest_cap(
     Some(RestCap { cap, carried, sources })
 }
 
-/// The number of the place of each corner, and the places at rest, in grid steps; those that the grid does not tell
-/// apart are one.
-fn corners(boundaries: &[Vec<SourceEdge>], grid: Grid) -> (Vec<Vec<usize>>, Vec<Point2<f64>>) {
+/// What lies between closed lines at rest, in triangles.
+pub(crate) struct Divided {
+    /// The new corners in each edge of each line [m].
+    pub(crate) new: Vec<Vec<Vec<Point>>>,
+    /// Those within [m].
+    pub(crate) within: Vec<Point>,
+    /// Counter-clockwise, as numbers of the corners of the lines, those in edges in their places, then those within.
+    pub(crate) triangles: Vec<[u32; 3]>,
+}
+
+/// Triangles between closed lines with these corners [m], the material on their left. None where edges cross.
+pub(crate) fn divided(lines: &[Vec<Point>], division: RestDivision, grid: Grid) -> Option<Divided> {
+    let (corners, places) = corners(lines, grid);
+    let old = places.len();
+    let triangles = triangles(&corners, places, division, grid.step)?;
+    let chains = Chains::new(&triangles, old);
+    let (mut all, mut new) = (Vec::with_capacity(corners.len()), Vec::with_capacity(corners.len()));
+    for line in &corners {
+        let (mut ring, mut of_line) = (Vec::with_capacity(line.len()), Vec::with_capacity(line.len()));
+        for (&from, &to) in line.iter().zip(line.iter().cycle().skip(1)) {
+            let chain = chains.between(from, to)?;
+            ring.push(from);
+            ring.extend(chain);
+            of_line.push(chain.iter().map(|&corner| rest_place(&triangles, corner, grid)).collect());
+        }
+        all.push(ring);
+        new.push(of_line);
+    }
+    let sides = Sides::new(&triangles, &all)?;
+    let count = all.iter().map(Vec::len).sum::<usize>();
+    let (mut within, mut number) = (Vec::new(), BTreeMap::new());
+    let mut found = Vec::with_capacity(sides.faces.len());
+    for (face, corner) in sides.faces {
+        let mut triangle = [0; 3];
+        for (k, vertex) in triangles.face(face).vertices().into_iter().enumerate() {
+            triangle[k] = corner[k].unwrap_or_else(|| {
+                *number.entry(vertex.index()).or_insert_with(|| {
+                    within.push(rest_place(&triangles, vertex.index(), grid));
+                    (count + within.len() - 1) as u32
+                })
+            });
+        }
+        found.push(triangle);
+    }
+    Some(Divided { new, within, triangles: found })
+}
+
+/// A place on an edge, a `part` of its length from its start, to the grid inwards.
+pub(crate) fn between(edge: &Edge, part: f64) -> GridPoint {
+    let [a, b] = [edge.a, edge.b].map(|p| Point2::new(p.x as f64, p.y as f64));
+    inwards(edge, Point2::new(a.x + part * (b.x - a.x), a.y + part * (b.y - a.y)))
+}
+
+/// The number of the place of each corner, and the places, in grid steps; those that the grid does not tell apart are
+/// one.
+fn corners(lines: &[Vec<Point>], grid: Grid) -> (Vec<Vec<usize>>, Vec<Point2<f64>>) {
     let mut places = Vec::new();
     let mut number = BTreeMap::new();
-    let mut corner = |edge: &SourceEdge| {
-        let place = grid.snap(edge.carried[0].rest);
+    let mut corner = |rest: &Point| {
+        let place = grid.snap(*rest);
         *number.entry((place.x, place.y)).or_insert_with(|| {
             // Not on the grid: lines that hardly part would cross.
-            places.push(Point2::new(edge.carried[0].rest.x / grid.step, edge.carried[0].rest.y / grid.step));
+            places.push(Point2::new(rest.x / grid.step, rest.y / grid.step));
             places.len() - 1
         })
     };
-    let corners = boundaries.iter().map(|boundary| boundary.iter().map(&mut corner).collect()).collect();
+    let corners = lines.iter().map(|line| line.iter().map(&mut corner).collect()).collect();
     (corners, places)
 }
 
