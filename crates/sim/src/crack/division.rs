@@ -288,6 +288,20 @@ impl Line {
         segments
     }
 
+    /// Of each segment beyond those of the crack itself, whether it is where it was `before`.
+    fn same_continuations(&self, before: &Self) -> SmallVec<[bool; 4]> {
+        let [now, was] = [self, before].map(|line| &line.segments[line.last as usize + 1..]);
+        now.iter().zip(was).map(|(now, was)| now == was).collect()
+    }
+
+    /// The segments of the crack itself that are not in `kept`, and those beyond it that are not the `same`.
+    fn others<'a>(&'a self, kept: Range<usize>, same: &'a [bool]) -> impl Iterator<Item = usize> + use<'a> {
+        let count = self.last as usize + 1;
+        let is_same = move |k: usize| same.get(k - count).copied().unwrap_or_default();
+        let own = (0..kept.start).chain(kept.end..count);
+        own.chain((count..self.segments.len()).filter(move |&k| !is_same(k)))
+    }
+
     /// All that a segment divides by.
     fn part(&self, k: usize) -> ((Point, Point), SegmentKind, bool) {
         (self.segments[k], self.kinds[k], self.at_tip[k])
@@ -411,7 +425,7 @@ impl Division {
                 self.add_box((a, b), &mut boxes);
                 changed_segments.push(ChangedSegment { a, b, cause: Cause::Itself, line: index as u32, tips: 0 });
             }
-            self.take_out(index, 0..0);
+            self.take_out(index, 0..0, &[]);
         }
         self.lines.truncate(count);
         self.given.truncate(count);
@@ -428,14 +442,15 @@ impl Division {
                 let (kept, by) = line.kept(before, |now, was| line.segments[now] == before.segments[was]);
                 line.first_number = (i64::from(before.first_number) - by) as u32;
                 let kept_now = (kept.start as i64 + by) as usize..(kept.end as i64 + by) as usize;
-                self.take_out(index, kept);
+                let same = line.same_continuations(before);
+                self.take_out(index, kept, &same);
                 self.lines[index] = line;
                 self.given[index] = given;
-                self.put_in(index, kept_now);
+                self.put_in(index, kept_now, &same);
             } else {
                 self.lines.push(line);
                 self.given.push(given);
-                self.put_in(index, 0..0);
+                self.put_in(index, 0..0, &[]);
             }
         }
         self.has_junctions = self.lines.iter().any(|l| l.has_junction);
@@ -500,10 +515,10 @@ impl Division {
         [low, high].map(|corner| [corner.x.floor() as i64, corner.y.floor() as i64])
     }
 
-    /// Puts the segments of a line but those in `kept` into the buckets.
-    fn put_in(&mut self, line: usize, kept: Range<usize>) {
+    /// Puts the segments of a line but those in `kept` into the buckets, of what carries it on what is not the `same`.
+    fn put_in(&mut self, line: usize, kept: Range<usize>, same: &[bool]) {
         let of = &self.lines[line];
-        for index in (0..of.segments.len()).filter(|index| !kept.contains(index)) {
+        for index in of.others(kept, same) {
             let (a, b) = of.segments[index];
             let listed = Listed { line: line as u32, segment: of.number(index), a, b };
             for cell in self.cells_of((a, b)) {
@@ -513,10 +528,10 @@ impl Division {
         }
     }
 
-    /// Takes the segments of a line but those in `kept` out of the buckets.
-    fn take_out(&mut self, line: usize, kept: Range<usize>) {
+    /// As [`Division::put_in`], takes them out.
+    fn take_out(&mut self, line: usize, kept: Range<usize>, same: &[bool]) {
         let of = &self.lines[line];
-        for index in (0..of.segments.len()).filter(|index| !kept.contains(index)) {
+        for index in of.others(kept, same) {
             let key = (line as u32, of.number(index));
             for cell in self.cells_of(of.segments[index]) {
                 let Some(bucket) = self.buckets.get_mut(&cell) else { continue };

@@ -30,6 +30,7 @@ impl TipField {
 /// `mu` μ [Pa], `kolosov` κ [–]. The faces lie at θ = ±π: a `place` with y = +0 and x < 0 is on the upper one, y = -0
 /// on the lower. Singular as 1/√r; not finite at the tip itself. Source: Williams 1957, in the notation of Kolosov and
 /// Muskhelishvili.
+#[inline]
 pub fn williams_fields(place: Vector, mu: f64, kolosov: f64) -> [TipField; 2] {
     let radius = place.norm();
     let (s, c) = (0.5 * place.y.atan2(place.x)).sin_cos();

@@ -89,8 +89,8 @@ impl CutParticles {
         }
     }
 
-    /// Tells of all misfits that can be let go of but the part `kept`: the row, and the energy that its particle gains
-    /// by that for the displacement `u` [J/m].
+    /// Tells of all misfits that can be let go of but the part `kept`: the row, the energy that its particle gains by
+    /// that for the displacement `u` [J/m], and what it has per volume [J/m³].
     ///
     /// One that is larger than the strain of its particle is let go of only while that lowers the energy of the
     /// particle: it is that of fields which an open crack has parted, and they would be pulled together by what nothing
@@ -101,7 +101,7 @@ impl CutParticles {
         particles: &Particles,
         materials: &[Elastic],
         u: &FieldVectors,
-        each: &mut dyn FnMut(usize, f64),
+        each: &mut dyn FnMut(usize, f64, f64),
     ) {
         let misfit = &mut self.misfit;
         self.strained.retain(|&row| {
@@ -117,25 +117,28 @@ impl CutParticles {
             let strain = self.strain_of_row(row, u);
             let own = self.misfit_of_row(row);
             // By all of what is let go of now, not by the slope: that may be past what lowers it.
-            let gain = self.gain(row, (&strain, &(strain - own * (1.0 - kept))), particles, materials);
+            let before = self.energy_density(row, &strain, particles, materials);
+            let after = self.energy_density(row, &(strain - own * (1.0 - kept)), particles, materials);
+            let gain = self.volume(row, particles) * (after - before);
             if gain < 0.0 || own.norm_squared() <= strain.norm_squared() {
-                each(row, gain);
+                each(row, gain, before);
             }
         }
     }
 
-    /// Lets go of the misfit of a row but the part `kept`. Returns the energy that its particle gains by it [J/m].
+    /// Lets go of the misfit of a row but the part `kept`; `before`: the energy per volume of its particle [J/m³].
+    /// Returns the energy that it gains [J/m].
     pub(super) fn let_go(
         &mut self,
         row: usize,
-        kept: f64,
+        (kept, before): (f64, f64),
         particles: &Particles,
         materials: &[Elastic],
         u: &FieldVectors,
     ) -> f64 {
-        let before = self.strain_of_row(row, u);
         self.misfit[row] = self.misfit[row].map(|x| x * kept);
-        self.gain(row, (&before, &self.strain_of_row(row, u)), particles, materials)
+        let after = self.energy_density(row, &self.strain_of_row(row, u), particles, materials);
+        self.volume(row, particles) * (after - before)
     }
 
     /// The particle of a row.
@@ -148,18 +151,15 @@ impl CutParticles {
         gradient(self.stencils.row(row).1, self.misfit_of_row(row), u)
     }
 
-    /// Energy that what a row stands for gains between two displacement gradients [J/m].
-    fn gain(
-        &self,
-        row: usize,
-        (before, after): (&Matrix, &Matrix),
-        particles: &Particles,
-        materials: &[Elastic],
-    ) -> f64 {
-        let p = self.stencils.row(row).0;
-        let elastic = &materials[particles.material[p] as usize];
-        let energy = |h: &Matrix| crate::energy_density(h, elastic.mu, elastic.lambda);
-        particles.volume[p] * self.parts[row].0 * (energy(after) - energy(before))
+    /// Volume that a row stands for [m²].
+    fn volume(&self, row: usize, particles: &Particles) -> f64 {
+        particles.volume[self.particle_of(row)] * self.parts[row].0
+    }
+
+    /// Energy per volume of the particle of a row for a displacement gradient [J/m³].
+    fn energy_density(&self, row: usize, h: &Matrix, particles: &Particles, materials: &[Elastic]) -> f64 {
+        let elastic = &materials[particles.material[self.particle_of(row)] as usize];
+        crate::energy_density(h, elastic.mu, elastic.lambda)
     }
 
     /// Puts new stencils in the place of old ones; particles that had none are added. Each stands for the whole of its
@@ -272,9 +272,9 @@ mod tests {
             let before = energy(&cut);
             let lower = crate::energy_density(&(strain - own * (1.0 - kept)), elastic.mu, elastic.lambda) < before * (1.0 - 1e-9);
             let mut asked = Vec::new();
-            cut.each_misfit(kept, &particles, &[elastic], &u, &mut |row, gain| asked.push((row, gain)));
-            for (row, told) in asked {
-                let gain = cut.let_go(row, kept, &particles, &[elastic], &u);
+            cut.each_misfit(kept, &particles, &[elastic], &u, &mut |row, gain, density| asked.push((row, gain, density)));
+            for (row, told, density) in asked {
+                let gain = cut.let_go(row, (kept, density), &particles, &[elastic], &u);
                 prop_assert!((gain - told).abs() <= 1e-9 * told.abs(), "{gain} {told}");
             }
             prop_assert!(energy(&cut) <= before, "{before} {}", energy(&cut));

@@ -61,6 +61,7 @@ impl Probe {
     }
 
     /// Value of a field vector at the probe.
+    #[inline]
     pub(super) fn value(&self, u: &FieldVectors) -> Vector {
         let mut value = Vector::zeros();
         for &(field, w) in &self.entries {

@@ -23,6 +23,9 @@ const REACH: f64 = 6.0;
 /// A strain that changes by less than this part of itself has not changed.
 const ROUND_OFF: f64 = 1e-12;
 
+/// What was told of so many cells is remembered: two rows of most boxes in which something has changed.
+const CELLS_OF_TWO_ROWS: usize = 24;
+
 /// A field with less than this part of a particle's mass has lost all but round-off.
 const NO_MASS: f64 = 1e-9;
 
@@ -70,12 +73,20 @@ impl Lattice {
     /// Cuts the particles anew that may be divided otherwise. Returns the energy that is lost [J/m].
     fn recut_particles(&mut self, of: &Changes, divides: bool, motion: &mut Motion) -> f64 {
         let mut affected: Vec<usize> = Vec::new();
+        let mut told: Vec<([i32; 2], bool)> = Vec::new();
         for &(low, high) in &of.boxes {
             // Those that no crack is near any more become whole again. Where a tip divides, all move.
-            let mut last = None;
+            // The particles of a cell see the same nodes, and come row by row.
+            told.clear();
             let mut may_be_cut_anew = |p: usize| {
                 let place = self.particles.rest[self.layout.riders.host(p).unwrap_or(p)];
-                self.may_have_changed(of, place, place, &mut last)
+                let cell = if self.has_rows() { self.grid.cell(place) } else { self.stencil(place).first };
+                let known = told.iter().rev().take(CELLS_OF_TWO_ROWS).find(|known| known.0 == cell);
+                known.map(|known| known.1).unwrap_or_else(|| {
+                    let found = self.may_have_changed(of, place, place, &mut None);
+                    told.push((cell, found));
+                    found
+                })
             };
             let around = self.particles.in_box(low, high);
             affected.extend(around.filter(|&p| (divides || may_be_cut_anew(p)) && !self.is_whole(p)));

@@ -31,6 +31,40 @@ pub(super) struct Coupled {
 pub(super) struct Ties {
     of_tip: BTreeMap<TipId, Vec<Tie>>,
     at_node: BTreeMap<u32, Coupled>,
+    /// The same in lists.
+    #[serde(skip)]
+    flat: Flat,
+}
+
+/// What [`Coupled`] fields make of forces, as it is asked for in each step.
+#[derive(Debug, Clone, Default)]
+struct Flat {
+    /// Whether it is that of the ties as they are.
+    is_known: bool,
+    /// Two fields that move together, as nearly all do, with their mixing.
+    pairs: Vec<([u32; 2], [f64; 4])>,
+    /// Nodes where more do.
+    others: Vec<u32>,
+}
+
+impl PartialEq for Flat {
+    /// It follows from the ties.
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl Flat {
+    fn new(at_node: &BTreeMap<u32, Coupled>) -> Self {
+        let mut flat = Self { is_known: true, ..Self::default() };
+        for (&node, group) in at_node.iter().filter(|(_, group)| !group.fields.is_empty()) {
+            match (&group.fields[..], &group.mixing[..]) {
+                (&[a, b], &[aa, ab, ba, bb]) => flat.pairs.push(([a, b], [aa, ab, ba, bb])),
+                _ => flat.others.push(node),
+            }
+        }
+        flat
+    }
 }
 
 impl Coupled {
@@ -85,17 +119,19 @@ impl Ties {
     }
 
     /// Lets the inertia of the ties share out the forces.
-    pub(super) fn share(&self, force: &mut FieldVectors) {
-        let mut before = Vec::new();
-        for group in self.at_node.values().filter(|group| !group.fields.is_empty()) {
-            // As nearly all are.
-            if let (&[a, b], &[aa, ab, ba, bb]) = (&group.fields[..], &group.mixing[..]) {
-                for force in force.iter_mut() {
-                    let (of_a, of_b) = (force[a as usize], force[b as usize]);
-                    (force[a as usize], force[b as usize]) = (aa * of_a + ab * of_b, ba * of_a + bb * of_b);
-                }
-                continue;
+    pub(super) fn share(&mut self, force: &mut FieldVectors) {
+        if !self.flat.is_known {
+            self.flat = Flat::new(&self.at_node);
+        }
+        // No field is of two nodes: these may come in any order.
+        for &([a, b], [aa, ab, ba, bb]) in &self.flat.pairs {
+            for force in force.iter_mut() {
+                let (of_a, of_b) = (force[a as usize], force[b as usize]);
+                (force[a as usize], force[b as usize]) = (aa * of_a + ab * of_b, ba * of_a + bb * of_b);
             }
+        }
+        let mut before = Vec::new();
+        for group in self.flat.others.iter().filter_map(|node| self.at_node.get(node)) {
             for force in force.iter_mut() {
                 before.clear();
                 before.extend(group.fields.iter().map(|&f| force[f as usize]));
@@ -171,7 +207,7 @@ impl Ties {
     ) -> Vec<u32> {
         let reach = (WINDOW.hypot(WINDOW) + 1.0) * lattice.grid.cell_size;
         // Particles are looked for in a box that may be a row larger.
-        let seen = lattice.reach() * lattice.grid.cell_size + 2.0 * lattice.particles.spacing;
+        let seen = lattice.reach() * lattice.grid.cell_size + 1.001 * lattice.particles.spacing;
         let is_as_before = |node: Point| {
             let is_far = |&p: &usize| (lattice.particles.rest[p] - node).amax() > seen;
             recut.is_some_and(|recut| recut.iter().all(is_far))
@@ -219,6 +255,7 @@ impl Ties {
                 None => drop(self.at_node.remove(&node)),
             }
         }
+        self.flat.is_known &= changed.is_empty();
         fields.extend(self.fields_at(&changed));
         fields
     }
@@ -235,6 +272,7 @@ impl Ties {
         }
         nodes.dedup();
         let mut fields: Vec<u32> = self.fields_at(&nodes).collect();
+        self.flat.is_known &= nodes.is_empty();
         for &node in &nodes {
             if let Some(group) = self.at_node.remove(&node) {
                 self.couple(lattice, node, group.members);
@@ -286,18 +324,28 @@ impl Ties {
         let n = fields.len();
         let at = |field: u32| fields.partition_point(|&f| f < field);
         let mass = |k: usize| lattice.mass()[fields[k] as usize];
-        let mut matrix = nalgebra::DMatrix::from_fn(n, n, |i, j| if i == j { mass(i) } else { 0.0 });
-        for tie in ties {
-            let (a, b) = (at(tie.first), at(tie.second));
-            matrix[(a, a)] += tie.inertia;
-            matrix[(b, b)] += tie.inertia;
-            matrix[(a, b)] -= tie.inertia;
-            matrix[(b, a)] -= tie.inertia;
-        }
-        // Positive definite, because masses are positive.
-        let mixing = matrix.cholesky().map(|factors| factors.inverse());
-        let mixing =
-            mixing.map_or(Vec::new(), |inverse| (0..n * n).map(|k| mass(k / n) * inverse[(k / n, k % n)]).collect());
+        let couplings = |add: &mut dyn FnMut(usize, usize, f64)| {
+            (0..n).for_each(|k| add(k, k, mass(k)));
+            for tie in &ties {
+                let (a, b) = (at(tie.first), at(tie.second));
+                add(a, a, tie.inertia);
+                add(b, b, tie.inertia);
+                add(a, b, -tie.inertia);
+                add(b, a, -tie.inertia);
+            }
+        };
+        // Positive definite, because masses are positive. Nearly all are of two fields.
+        let mixing: Vec<f64> = if n == 2 {
+            let mut matrix = nalgebra::Matrix2::<f64>::zeros();
+            couplings(&mut |i, j, x| matrix[(i, j)] += x);
+            let inverse = matrix.cholesky().map(|factors| factors.inverse());
+            inverse.map_or(Vec::new(), |inverse| (0..4).map(|k| mass(k / 2) * inverse[(k / 2, k % 2)]).collect())
+        } else {
+            let mut matrix = nalgebra::DMatrix::<f64>::zeros(n, n);
+            couplings(&mut |i, j, x| matrix[(i, j)] += x);
+            let inverse = matrix.cholesky().map(|factors| factors.inverse());
+            inverse.map_or(Vec::new(), |inverse| (0..n * n).map(|k| mass(k / n) * inverse[(k / n, k % n)]).collect())
+        };
         let fields = if mixing.is_empty() { Vec::new() } else { fields };
         self.at_node.insert(node, Coupled { members, fields, mixing });
     }
@@ -400,7 +448,7 @@ fn ties_at(
                 if let Some(same) = same.filter(|_| is_as_before) {
                     return same.laid_anew(ahead);
                 }
-                let [above, below] = fields.map(|field| Rigidity::of(lattice, field, place));
+                let [above, below] = Rigidity::of(lattice, fields, place);
                 let crossing = h / above.wave_speed.max(below.wave_speed);
                 Tie::new(fields, (node as u32, place), [above.stiffness, below.stiffness], crossing, ahead)
             }));
@@ -420,21 +468,22 @@ struct Rigidity {
 }
 
 impl Rigidity {
-    /// That of `field` at a node at `place`.
-    fn of(lattice: &Lattice, field: u32, place: Point) -> Self {
+    /// That of two `fields` of a node at `place`.
+    fn of(lattice: &Lattice, fields: [u32; 2], place: Point) -> [Self; 2] {
         let reach = Vector::repeat(lattice.reach() * lattice.grid.cell_size);
-        let mut rigidity = Self::default();
+        let mut rigidities = [Self::default(); 2];
         let mut reader = lattice.reader();
         for p in lattice.particles.in_box(place - reach, place + reach) {
             let e = lattice.material(p);
             let modulus = e.effective_modulus * lattice.particles.volume[p];
             reader.for_each_part(p, |of, share, _, gradient| {
-                if of == field as usize {
+                if let Some(k) = fields.iter().position(|&field| of == field as usize) {
+                    let rigidity = &mut rigidities[k];
                     rigidity.stiffness += share * modulus * gradient.norm_squared();
                     rigidity.wave_speed = rigidity.wave_speed.max(e.dilatational_wave_speed());
                 }
             });
         }
-        rigidity
+        rigidities
     }
 }
