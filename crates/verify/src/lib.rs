@@ -18,7 +18,8 @@
 //!   what people draw, and the first place is the one that is written down.
 //! - Edges are selected by their side, or by the stretch of the outline that is meant, never by a box of nodes.
 //! - A row has the same name at every place. It is one number of one run: worst, mean and deviation come by themselves.
-//! - What takes longer than some ten seconds at 32 places says so: `family_cells` for a coarser grid, `long` for fewer.
+//! - What takes longer than some minutes at 32 places says so: `family_cells` for a coarser grid, in which targets
+//!   may be missed that hold as drawn, `long` for fewer places.
 //! - Its coarse version goes into `tests/tests/reference_cases.rs`.
 //!
 //! ```

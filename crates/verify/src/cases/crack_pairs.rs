@@ -18,8 +18,7 @@ pub(crate) const CASE: Case = Case::new(
     "K of two cracks near each other in a wide plate, collinear and stacked",
     ("along half a crack", 8.0),
     compute,
-)
-.family_cells(5.0);
+);
 
 /// b/a.
 const HALF_WIDTH: f64 = 14.0;

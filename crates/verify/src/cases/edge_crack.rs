@@ -15,8 +15,7 @@ use fissure_sim::{Elastic, SimulationError};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 pub(crate) const CASE: Case =
-    Case::new("edge-crack", "K_I of an edge crack in plates under tension", ("along the crack", 16.0), compute)
-        .family_cells(8.0);
+    Case::new("edge-crack", "K_I of an edge crack in plates under tension", ("along the crack", 16.0), compute);
 
 /// One of its plates, H/W = 2 and a/W = 0.4, for what is computed many times.
 pub(crate) const ONE_PLATE: Case =

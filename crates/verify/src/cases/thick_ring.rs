@@ -17,8 +17,7 @@ pub(crate) const CASE: Case = Case::new(
     "displacement and energy of a thick ring under pressure inside or outside",
     ("across the ring", 12.0),
     compute,
-)
-.family_cells(6.0);
+);
 
 /// a and b [m].
 const RADII: [f64; 2] = [1.0, 2.0];
