@@ -80,7 +80,7 @@ pub(crate) struct Scenery<'a> {
 }
 
 impl Neighbours {
-    /// Finds all.
+    /// Finds all. [`Neighbours::foresee`] has to follow, here and in [`Neighbours::find_again`].
     pub(crate) fn find(scenery: &Scenery<'_>) -> Self {
         let mut found = Self::default();
         found.nearing.lay_bins(scenery.surface, scenery.place, scenery.reach());
@@ -161,10 +161,13 @@ impl Neighbours {
         self.nearing.may_pass(scenery.most_moved * scenery.cell_size)
     }
 
-    /// Takes it that all will move with `velocity` [m/s] for `time` [s], and chooses the vertices that may touch
-    /// something until then.
-    pub(crate) fn choose(&mut self, scenery: &Scenery<'_>, velocity: &[Vector], time: f64) {
+    /// Takes it that all will move with `velocity` [m/s] for `time` [s].
+    pub(crate) fn foresee(&mut self, scenery: &Scenery<'_>, velocity: &[Vector], time: f64) {
         self.nearing.foresee(scenery.surface, velocity, time);
+    }
+
+    /// Chooses the vertices that may touch something until the next look.
+    pub(crate) fn choose(&mut self, scenery: &Scenery<'_>) {
         let touches = |c: &Comer| self.nearing.by_next_look(c.vertex) + TOUCHES * scenery.cell_size;
         let is_due = |&k: &u32| self.comers[k as usize].distance <= touches(&self.comers[k as usize]);
         let due: Vec<u32> = (0..self.comers.len() as u32).filter(is_due).collect();
@@ -394,7 +397,8 @@ mod tests {
                 if found.nearing.may_pass(most_moved * cell_size) {
                     found.find_again(&scenery(&surface, &place, scale));
                 }
-                found.choose(&scenery(&surface, &place, scale), &velocity, 1.0);
+                found.foresee(&scenery(&surface, &place, scale), &velocity, 1.0);
+                found.choose(&scenery(&surface, &place, scale));
                 place.iter_mut().zip(&velocity).for_each(|(p, way)| *p += way);
                 last = velocity;
                 let touches = |(vertex, near): (u32, &[Neighbour])| {

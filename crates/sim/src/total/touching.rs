@@ -153,7 +153,7 @@ impl Touching {
             let velocity = velocities(surfaces, moment, motion);
             let scenery = scenery_of(surfaces, &self.place, (self.cell_size, self.cracks_touch));
             if !self.neighbours.go_on(&scenery, &velocity, time) {
-                self.neighbours.choose(&scenery, &velocity, time);
+                self.neighbours.choose(&scenery);
                 return;
             }
         }
@@ -169,7 +169,8 @@ impl Touching {
         } else {
             self.neighbours = Neighbours::find(&scenery);
         }
-        self.neighbours.choose(&scenery, &velocities(surfaces, moment, motion), time);
+        self.neighbours.foresee(&scenery, &velocities(surfaces, moment, motion), time);
+        self.neighbours.choose(&scenery);
         self.are_found = true;
     }
 
