@@ -462,6 +462,8 @@ pub(crate) enum ChartName {
     Stages,
     /// An example at four resolutions.
     Visual,
+    /// The figures of the thesis that this comes from, again.
+    Thesis,
     /// Cost of single features where nothing needs them.
     Features,
     /// Errors and times said before a run beside those that come out.
@@ -470,8 +472,16 @@ pub(crate) enum ChartName {
 
 impl ChartName {
     /// All, in the order in which they are made.
-    pub(crate) const ALL: [Self; 7] =
-        [Self::Speed, Self::Stages, Self::Features, Self::Visual, Self::Stability, Self::Dial, Self::Accuracy];
+    pub(crate) const ALL: [Self; 8] = [
+        Self::Speed,
+        Self::Stages,
+        Self::Features,
+        Self::Visual,
+        Self::Thesis,
+        Self::Stability,
+        Self::Dial,
+        Self::Accuracy,
+    ];
 }
 
 /// How to speak.

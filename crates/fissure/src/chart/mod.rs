@@ -6,10 +6,12 @@ mod dial;
 mod examples;
 mod features;
 mod origin;
+mod shape;
 mod speed;
 mod stability;
 mod stages;
 mod table;
+mod thesis;
 mod visual;
 
 use crate::args::{ChartArguments, ChartName};
@@ -48,6 +50,7 @@ pub(crate) fn chart(arguments: &ChartArguments, report: &Report) -> Result<Exit,
                 ChartName::Speed => speed::chart(&charting)?,
                 ChartName::Stages => stages::chart(&charting, &arguments.examples)?,
                 ChartName::Visual => visual::chart(&charting, &arguments.examples)?,
+                ChartName::Thesis => thesis::chart(&charting, &arguments.examples)?,
             }
         }
     }

@@ -2,12 +2,11 @@
 
 use super::Charting;
 use super::examples::examples;
+use super::shape::{shape, strokes};
 use super::table::Table;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use fissure_chart::{Figure, Panel, Plot, Stroke};
-use fissure_plane::{Point, simplified};
-use fissure_scene::{Frame, Scene};
+use fissure_chart::{Figure, Panel, Plot};
 use fissure_sim::Simulation;
 use fissure_verify::cpu_time;
 use std::ops::ControlFlow;
@@ -20,10 +19,6 @@ const EXAMPLE: &str = "glass-impact";
 /// Factors on its spacing.
 const COARSER: [f64; 4] = [4.0, 2.0, std::f64::consts::SQRT_2, 1.0];
 const COARSER_QUICK: [f64; 4] = [4.0, 2.8, 2.0, std::f64::consts::SQRT_2];
-/// Places this near to the line without them are left out [thousandths of the size of the bodies]: a tenth of a pixel,
-/// as four panels share the width of a page.
-const UNSEEN: f64 = 0.5;
-
 /// Runs what is missing and draws.
 pub(super) fn chart(charting: &Charting<'_>, folder: &Path) -> Result<(), Failure> {
     let found = examples(folder)?.into_iter().find(|example| example.name == EXAMPLE).ok_or_else(|| {
@@ -67,33 +62,6 @@ pub(super) fn chart(charting: &Charting<'_>, folder: &Path) -> Result<(), Failur
         ])?;
     }
     charting.draw(NAME, &figure(charting, &table, &factors))
-}
-
-/// All lines of a frame as words: outlines as `o`, cracks as `c`, each with places in whole thousandths of the size of
-/// the bodies at rest, without those that nobody sees.
-fn shape(scene: &Scene, frame: &Frame) -> String {
-    let corners: Vec<Point> = scene.bodies.iter().flat_map(|body| body.region.exterior.iter().copied()).collect();
-    let (low, high) = fissure_plane::bounds(&corners);
-    let unit = 1000.0 / (high - low).amax();
-    let line = |kind: char, points: &mut dyn Iterator<Item = &Point>| {
-        let line: Vec<Point> = points.map(|p| Point::from((p - low) * unit)).collect();
-        let places = simplified(&line, UNSEEN).into_iter().map(|p| format!("{:.0} {:.0}", p.x, p.y));
-        format!("{kind} {}", places.collect::<Vec<_>>().join(" "))
-    };
-    let outlines = frame.outlines.iter().map(|o| line('o', &mut o.position.iter().chain(o.position.first())));
-    let faces = frame.cracks.iter().flat_map(|c| [&c.above, &c.below]).map(|face| line('c', &mut face.iter()));
-    outlines.chain(faces).collect::<Vec<_>>().join(";")
-}
-
-/// The lines that [`shape`] has written.
-fn strokes(shape: &str) -> Vec<Stroke> {
-    let stroke = |line: &str| {
-        let mut words = line.split(' ');
-        let colour = usize::from(words.next() == Some("c"));
-        let numbers: Vec<f64> = words.filter_map(|word| word.parse().ok()).collect();
-        Stroke { colour, points: numbers.chunks_exact(2).map(|p| (p[0], p[1])).collect() }
-    };
-    shape.split(';').map(stroke).collect()
 }
 
 fn figure(charting: &Charting<'_>, table: &Table<'_>, factors: &[f64]) -> Figure {
