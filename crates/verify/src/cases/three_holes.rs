@@ -46,7 +46,9 @@ fn problem(cells: f64, over: f64) -> Problem {
         let place = |angle: f64| Point::new((6.0 + RADIUS * angle.cos()) * INCH, (y + RADIUS * angle.sin()) * INCH);
         beam.holes.push((0..64).map(|k| place(corner(k))).collect());
     }
-    let near = |x: f64, y: f64| Selection::Near { points: vec![Point::new(x * INCH, y * INCH)], radius: 0.15 * INCH };
+    // At least one particle: from 3 cells on .15 holds one wherever the grid lies.
+    let radius = 0.15_f64.max(0.45 / cells) * INCH;
+    let near = |x: f64, y: f64| Selection::Near { points: vec![Point::new(x * INCH, y * INCH)], radius };
     let cell_size = INCH / cells;
     Problem::new("three-holes", beam, material, PlaneState::Stress, cell_size)
         .crack(&[(4.0 * INCH, 0.0), (4.0 * INCH, INCH)], [false, true])
@@ -56,7 +58,8 @@ fn problem(cells: f64, over: f64) -> Problem {
 }
 
 fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationError> {
-    let cells = options.cells_or(CASE.cells.1).round();
+    // Whole cells along the beam.
+    let cells = 0.5 * (2.0 * options.cells_or(CASE.cells.1)).round();
     let mut problem = problem(cells, 1.3).growing();
     let scene = &mut problem.scene;
     // A frame is the time over which a tip averages its direction; it grows by an eighth of a cell in it.
