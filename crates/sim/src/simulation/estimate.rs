@@ -130,6 +130,8 @@ impl Simulation {
         let flows = self.scene.materials.iter().any(|m| m.plasticity.is_some());
         let nodes = match self.scene.solver.kernel {
             Kernel::Bilinear => 4.0,
+            // At rest it is the bilinear one.
+            Kernel::Gimp if self.formulation == Formulation::Total => 4.0,
             Kernel::Gimp | Kernel::Quadratic => 9.0,
             Kernel::Cubic => 16.0,
         };

@@ -1,5 +1,6 @@
 //! What the solver holds, counted before it is there.
 
+use super::lattice::kernel_of;
 use super::probe::Probe;
 use crate::grid::entries::Entry;
 use crate::grid::kernel;
@@ -20,10 +21,10 @@ const ROWS_OF_PARTICLE: usize = 2;
 
 /// What a run of `scene` holds.
 pub(crate) fn need(scene: &Scene, amounts: &Amounts) -> Need {
-    let has_rows = scene.solver.kernel == Kernel::Bilinear
+    let has_rows = kernel_of(scene) == Kernel::Bilinear
         && (scene.cell_size - 2.0 * scene.particle_spacing).abs() < 1e-12 * scene.cell_size;
     let cut_particles = if has_rows { amounts.cut_particles } else { amounts.particles };
-    let entries = kernel::width(scene.solver.kernel).pow(2) * size_of::<Entry>();
+    let entries = kernel::width(kernel_of(scene)).pow(2) * size_of::<Entry>();
     let cut = cut_particles * (entries + CUT_PARTICLE) as f64;
     // While entries are laid they are there twice.
     let laid = cut_particles * entries as f64;
