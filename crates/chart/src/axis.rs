@@ -13,7 +13,7 @@ pub enum Scale {
 /// An axis of a plot.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Axis {
-    /// What it shows, with its unit.
+    /// What it shows, with its unit. Upwards none: without ticks.
     pub label: String,
     /// Its scale.
     pub scale: Scale,

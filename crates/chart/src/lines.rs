@@ -3,7 +3,7 @@
 use crate::axis::{Axis, Ruler};
 use crate::figure::Area;
 use crate::style::COLOURS;
-use crate::svg::{Anchor, Svg};
+use crate::svg::{Anchor, Svg, width};
 
 /// A line of a plot.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -33,12 +33,19 @@ pub(crate) fn draw(svg: &mut Svg, area: Area, axes: (&Axis, &Axis), lines: &[Lin
     let x = Ruler::new(axes.0, values(|p| p.0), (inner.x, inner.x + inner.width));
     let y = Ruler::new(axes.1, values(|p| p.1), (inner.y + inner.height, inner.y));
     let bottom = inner.y + inner.height;
+    let mut written = f64::NEG_INFINITY;
     for (value, word) in x.ticks() {
         let Some(at) = x.place(value) else { continue };
         svg.line("g", (at, inner.y), (at, bottom));
-        svg.text("m", (at, bottom + 15.0), 11.0, Anchor::Middle, &word);
+        // In a narrow panel not every one has room.
+        let half = 0.5 * width(&word, 11.0);
+        if at - half > written + 4.0 {
+            svg.text("m", (at, bottom + 15.0), 11.0, Anchor::Middle, &word);
+            written = at + half;
+        }
     }
-    for (value, word) in y.ticks() {
+    // An axis without a name only puts things below each other.
+    for (value, word) in y.ticks().into_iter().filter(|_| !axes.1.label.is_empty()) {
         let Some(at) = y.place(value) else { continue };
         svg.line("g", (inner.x, at), (inner.x + inner.width, at));
         svg.text("m", (inner.x - 5.0, at + 4.0), 11.0, Anchor::End, &word);
@@ -77,5 +84,37 @@ fn draw_line(svg: &mut Svg, line: &Line, x: &Ruler, y: &Ruler) {
         if let Some(word) = line.words.get(k) {
             svg.text("m", (place.0 + 7.0, place.1 + 4.0), 10.5, Anchor::Start, word);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Truth: the widths of the words, in panels from narrow to broad, with few decades and with many.
+    #[test]
+    fn words_along_an_axis_do_not_overlap() {
+        for panel in [150.0, 200.0, 400.0, 800.0] {
+            for decades in [0.5, 1.7, 3.9, 6.0, 12.0] {
+                let line = Line { points: vec![(1e-3, 1.0), (1e-3 * 10.0_f64.powf(decades), 2.0)], ..Line::default() };
+                let (mut svg, area) = (Svg::default(), Area { x: 0.0, y: 0.0, width: panel, height: 300.0 });
+                draw(&mut svg, area, (&Axis::logarithmic(""), &Axis::linear("")), &[line]);
+                let text = svg.finish((panel, 300.0), "", "");
+                let ticks: Vec<(f64, &str)> = text.lines().filter_map(tick).collect();
+                assert!(ticks.len() >= 2 || decades < 1.0, "{panel} {decades}: {ticks:?}");
+                let end = |(at, word): (f64, &str), side: f64| at + side * 0.5 * width(word, 11.0);
+                for pair in ticks.windows(2) {
+                    assert!(end(pair[0], 1.0) < end(pair[1], -1.0), "{panel} {decades}: {pair:?}");
+                }
+            }
+        }
+    }
+
+    /// Place and word of a tick along the axis.
+    fn tick(line: &str) -> Option<(f64, &str)> {
+        let rest = line.strip_prefix(r#"<text class="m" x=""#)?;
+        let (at, rest) = rest.split_once('"')?;
+        let word = rest.split_once(r#"font-size="11" text-anchor="middle">"#)?.1.strip_suffix("</text>")?;
+        Some((at.parse().ok()?, word)).filter(|(_, word)| !word.is_empty())
     }
 }

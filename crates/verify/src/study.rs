@@ -106,7 +106,7 @@ pub const STUDIES: [Study; 5] = [
     },
     Study {
         name: "crack-motion-late",
-        about: "Crack that starts late and runs, τ = 0.6: distance from its way",
+        about: "Crack that starts late, τ = 0.6: error of its way",
         along: "over half the height of the plate",
         cells: &[10.0, 14.0, 20.0, 28.0, 40.0],
         places: 8,
@@ -117,7 +117,7 @@ pub const STUDIES: [Study; 5] = [
     },
     Study {
         name: "crack-motion-early",
-        about: "Crack that runs early and fast, τ = 0.2: distance from its way",
+        about: "Crack that runs fast, τ = 0.2: error of its way",
         along: "over half the height of the plate",
         cells: &[10.0, 14.0, 20.0, 28.0, 40.0],
         places: 8,
@@ -128,7 +128,7 @@ pub const STUDIES: [Study; 5] = [
     },
     Study {
         name: "three-holes",
-        about: "Crack past holes: distance from the path, by its length",
+        about: "Crack past three holes: error of its path",
         along: "per inch",
         cells: &[1.5, 2.0, 2.5, 3.0, 4.0, 6.0],
         places: 2,

@@ -75,7 +75,7 @@ fn figure(charting: &Charting<'_>, table: &Table<'_>) -> Figure {
             ..Line::default()
         });
         let plain = Line { points: vec![(1.0, 0.5), (1.0, count + 0.5)], colour: 2, dashes: "5 4", ..Line::default() };
-        let x = Axis { range: Some((0.0, 4.5)), ..Axis::linear("time, by that of the plain plate") };
+        let x = Axis { range: Some((0.0, 3.5)), ..Axis::linear("time, by that of the plain plate") };
         let y = Axis { range: Some((0.0, count + 1.0)), ..Axis::linear("") };
         let plot = Plot::Lines { x, y, lines: std::iter::once(plain).chain(lines).collect() };
         Panel { title: format!("{formulation} formulation"), plot }

@@ -150,14 +150,17 @@ pub(super) fn transfers(charting: &Charting<'_>, table: &Table<'_>) -> Figure {
             lines.push(broad(front.clone()));
             let x = Axis { range: time, label: "CPU time [s]".into(), ..seconds() };
             let y = Axis { range: errors, label: "error".into(), ..error() };
-            Panel { title: format!("{}: {kernel}", study.name), plot: Plot::Lines { x, y, lines } }
+            Panel {
+                title: format!("{}: {kernel}", study.name.trim_start_matches("crack-motion-")),
+                plot: Plot::Lines { x, y, lines },
+            }
         };
         KERNELS.map(panel)
     });
     Figure {
         title: "The updated formulation: transfers and kernels".into(),
         caption: vec![
-            "Cases from above, kernels from left to right; the broad line is the front of all that was measured, as in the figure of \
+            "Cases from above (late and early: the cracks that run), kernels from left to right; the broad line is the front of all that was measured, as in the figure of \
              formulations. The worst of several places counts; errors above 300 % are not shown."
                 .into(),
             charting.origin.to_string(),
