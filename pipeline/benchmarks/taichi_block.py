@@ -3,6 +3,7 @@
     pip install taichi
     cargo build --release
     python pipeline/benchmarks/taichi_block.py [--particles 250000] [--threads 1] [--rounds 5] [--fissure target/release/fissure]
+        [--csv docs/charts/taichi.csv]
 
 An elastic square flies and turns, without walls and cracks, so that both do the same: quadratic B-splines, affine PIC, fixed
 corotated stress, four particles in a cell, double precision. Taichi runs MLS-MPM (Hu et al. 2018, as in its example mpm99) in the
@@ -182,6 +183,7 @@ def main():
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--fissure", type=pathlib.Path, default=pathlib.Path("target/release/fissure"))
+    parser.add_argument("--csv", type=pathlib.Path, help="file to write the table into, too")
     options = parser.parse_args()
     if not options.fissure.is_file():
         sys.exit(f"{options.fissure} is not there: cargo build --release, or name the program with --fissure")
@@ -202,13 +204,18 @@ def main():
                 rates[name].append([side * side * block_of.steps / (b - a) for a, b in zip(short, long)])
         drift = block.drift()
     version = ".".join(map(str, taichi.__version__))
-    print(f"{side * side} particles, {options.threads} threads, f64, Taichi {version}, {platform.processor() or platform.machine()}")
+    head = f"{side * side} particles, {options.threads} threads, f64, Taichi {version}, {platform.processor() or platform.machine()}"
+    print(head)
     print(f"mean velocity of Taichi's block off by {drift:.1e} m/s after {LONG} steps\n")
     print("| | M particle-steps/s, CPU | of Taichi | wall | of Taichi |\n|---|---|---|---|---|")
     medians = {name: [statistics.median(column) for column in zip(*rows)] for name, rows in rates.items()}
     of = next(iter(medians.values()))
     for name, (cpu, wall) in medians.items():
         print(f"| {name} | {cpu * 1e-6:.1f} | {cpu / of[0]:.1f} | {wall * 1e-6:.1f} | {wall / of[1]:.1f} |")
+    if options.csv:
+        rows = [f"{name.replace(',', ';')},{cpu:.4g},{cpu / of[0]:.3g},{wall:.4g},{wall / of[1]:.3g}" for name, (cpu, wall) in medians.items()]
+        columns = "program,particle_steps_per_cpu_second,of_taichi_cpu,particle_steps_per_second,of_taichi"
+        options.csv.write_text("\n".join([f"# {head.replace(',', ';')}", columns, *rows]) + "\n")
 
 
 if __name__ == "__main__":
