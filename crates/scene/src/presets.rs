@@ -28,7 +28,7 @@ pub fn solver_preset(preset: SolverPreset) -> (SolverSettings, GrowthSettings) {
             },
             GrowthSettings {
                 enabled: true,
-                increment: 0.125,
+                increment: 0.25,
                 bending: 1.0,
                 speed_limit: 0.99,
                 speed_curve: Curve::default(),

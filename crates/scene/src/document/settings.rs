@@ -246,7 +246,7 @@ pub struct OutputKeys {
     #[schemars(transform = SMOOTHING_CELLS.bounds())]
     pub smoothing: f64,
     /// How long edges of crack walls may be where their path is straight, in cells: 0.5 makes meshes of half the size.
-    /// Default: 0, as cracks grew, about an eighth of a cell.
+    /// Default: 0, as cracks grew, about a quarter of a cell.
     #[schemars(transform = WALL_CELLS.bounds())]
     pub wall_step: f64,
     /// How rough the walls of cracks are shown. Default: as the cracks are.
