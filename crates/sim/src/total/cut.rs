@@ -9,8 +9,10 @@ use crate::threads;
 use fissure_plane::{Matrix, Vector};
 use serde::{Deserialize, Serialize};
 
-/// A misfit below this is round-off [–].
+/// A misfit below this is round-off [–] ...
 const NO_MISFIT: f64 = 1e-15;
+/// ... and one below this part of the strain does nothing that can be seen: rows would stay strained for 400 steps.
+const SMALL_MISFIT: f64 = 1e-5;
 
 /// What the stress of a row takes, over what a number of a list takes that is added to another.
 const ROW_COST: usize = 32;
@@ -103,19 +105,14 @@ impl CutParticles {
         u: &FieldVectors,
         each: &mut dyn FnMut(usize, f64, f64),
     ) {
-        let misfit = &mut self.misfit;
-        self.strained.retain(|&row| {
-            let of = &mut misfit[row as usize];
-            let is_left = of.iter().any(|x| x.abs() > NO_MISFIT);
-            if !is_left {
-                *of = [0.0; 4];
-            }
-            is_left
-        });
-        for &row in &self.strained {
+        let mut strained = std::mem::take(&mut self.strained);
+        strained.retain(|&row| {
             let row = row as usize;
-            let strain = self.strain_of_row(row, u);
-            let own = self.misfit_of_row(row);
+            let (strain, own) = (self.strain_of_row(row, u), self.misfit_of_row(row));
+            if own.amax() <= NO_MISFIT || own.norm_squared() <= SMALL_MISFIT.powi(2) * strain.norm_squared() {
+                self.misfit[row] = [0.0; 4];
+                return false;
+            }
             // By all of what is let go of now, not by the slope: that may be past what lowers it.
             let before = self.energy_density(row, &strain, particles, materials);
             let after = self.energy_density(row, &(strain - own * (1.0 - kept)), particles, materials);
@@ -123,7 +120,9 @@ impl CutParticles {
             if gain < 0.0 || own.norm_squared() <= strain.norm_squared() {
                 each(row, gain, before);
             }
-        }
+            true
+        });
+        self.strained = strained;
     }
 
     /// Lets go of the misfit of a row but the part `kept`; `before`: the energy per volume of its particle [J/m³].
