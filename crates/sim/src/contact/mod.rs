@@ -11,10 +11,10 @@
 //! - [`impulses`]: impulses of all meetings together.
 //! - [`friction`]: Coulomb's cone.
 
-mod cells;
 pub(crate) mod friction;
 pub(crate) mod impulses;
 pub(crate) mod meeting;
 mod nearing;
 pub(crate) mod neighbours;
 pub(crate) mod surface;
+mod surroundings;

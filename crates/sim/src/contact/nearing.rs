@@ -53,6 +53,10 @@ pub(crate) struct Nearing {
     around: Vec<[Range<usize>; 3]>,
     /// The bin of each vertex, and of the middle of each edge; none where there is no edge.
     bins: Vec<(usize, Option<usize>)>,
+    /// All edges, bin by bin, in each of them rising ...
+    edges: Vec<u32>,
+    /// ... and where those of each bin begin; one more at the end.
+    first: Vec<usize>,
     /// Of each vertex: by how much edges may have come nearer to it [m], and by how much more until the next look.
     moved: Vec<(f64, f64)>,
     /// The same of any two things since bins were laid.
@@ -88,6 +92,7 @@ impl Nearing {
                 })
             })
             .collect();
+        self.sort_edges();
         self.far = (0.0, 0.0);
         self.moved.resize(surface.len(), (0.0, 0.0));
     }
@@ -136,13 +141,53 @@ impl Nearing {
         self.far.0 + self.far.1 >= self.most_far
     }
 
-    /// Which edges are in the bins of the `wanted` vertices and beside these: all that are within reach of them.
-    pub(crate) fn edges_around(&self, wanted: &[bool]) -> Vec<bool> {
+    /// Sorts edges by their bins, by counting.
+    fn sort_edges(&mut self) {
+        let Self { around, bins, edges, first, .. } = self;
+        let of_edges = || bins.iter().enumerate().filter_map(|(edge, (_, bin))| Some((edge as u32, (*bin)?)));
+        *first = vec![0; around.len() + 1];
+        of_edges().for_each(|(_, bin)| first[bin + 1] += 1);
+        (0..around.len()).for_each(|bin| first[bin + 1] += first[bin]);
+        let mut next = first.clone();
+        *edges = vec![0; next[around.len()]];
+        for (edge, bin) in of_edges() {
+            edges[next[bin]] = edge;
+            next[bin] += 1;
+        }
+    }
+
+    /// How many bins there are.
+    pub(super) fn count(&self) -> usize {
+        self.around.len()
+    }
+
+    /// The bin of a vertex.
+    pub(super) fn bin_of(&self, vertex: u32) -> usize {
+        self.bins[vertex as usize].0
+    }
+
+    /// The bins that all edges within reach of the vertices of a bin are in: row by row.
+    pub(super) fn bins_around(&self, bin: usize) -> [Range<usize>; 3] {
+        self.around[bin].clone()
+    }
+
+    /// Where the edges of some bins are in the list of all.
+    pub(super) fn range_of(&self, bins: Range<usize>) -> Range<usize> {
+        self.first[bins.start]..self.first[bins.end]
+    }
+
+    /// All edges, bin by bin.
+    pub(super) fn edges(&self) -> &[u32] {
+        &self.edges
+    }
+
+    /// Which bins have edges within reach of the `wanted` vertices, and maybe others.
+    pub(super) fn bins_near(&self, wanted: &[bool]) -> Vec<bool> {
         let mut is_near = vec![false; self.around.len()];
         for ((own, _), _) in self.bins.iter().zip(wanted).filter(|(_, wanted)| **wanted) {
             self.around[*own].iter().for_each(|row| is_near[row.clone()].fill(true));
         }
-        self.bins.iter().map(|(_, middle)| middle.is_some_and(|bin| is_near[bin])).collect()
+        is_near
     }
 
     /// A vertex is looked at.

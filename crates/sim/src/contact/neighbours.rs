@@ -1,9 +1,9 @@
 //! Which vertices of surfaces can come to which edges before the next look.
 
-use super::cells::{Cells, Surroundings};
 use super::meeting::WIDEST;
 use super::nearing::Nearing;
 use super::surface::Surface;
+use super::surroundings::Surroundings;
 use fissure_plane::{Point, Vector, distance_to_segment, nearest_on_segment};
 
 /// What is farther away than this, in cells, does not touch: round surfaces lie a little before their edges.
@@ -104,15 +104,13 @@ impl Neighbours {
         let Scenery { surface, place, .. } = *scenery;
         let rest = surface.places_at_rest();
         let search = Search::new(scenery, &rest);
-        let near_wanted = self.nearing.edges_around(wanted);
-        let edges = (0..surface.len() as u32).filter(|&edge| near_wanted[edge as usize]);
-        let cells = Cells::new(surface, place, search.reach(), edges.clone());
-        let slides = [true, false].map(|are_one| search.least_slide(are_one));
-        let mut around = Surroundings::new(&cells, surface, place, slides);
-        let mut edge_normals: Vec<Option<Vector>> = vec![None; surface.len()];
-        edges.for_each(|edge| edge_normals[edge as usize] = surface.edge_normal(edge, place));
         let before = std::mem::take(self);
-        *self = Self { first: vec![0], nearing: before.nearing, ..Self::default() };
+        *self = Self { first: vec![0], ..Self::default() };
+        let mut nearing = before.nearing;
+        let slides = [true, false].map(|are_one| search.least_slide(are_one));
+        let near_wanted = nearing.bins_near(wanted);
+        let mut around = Surroundings::new(&nearing, (surface, place), &near_wanted, search.reach(), slides);
+        let mut edge_normals: Vec<Option<Option<Vector>>> = vec![None; surface.len()];
         let mut known = before.comers.iter().zip(before.first.windows(2)).peekable();
         let touches = (scenery.most_moved + TOUCHES) * scenery.cell_size;
         let mut near = Vec::new();
@@ -125,15 +123,19 @@ impl Neighbours {
                 }
                 continue;
             }
-            self.nearing.restart(vertex);
             let x = place[vertex as usize];
-            if around.are_calm_at(x) {
+            if around.are_calm_at(vertex) {
                 continue;
             }
             let Some(normal) = surface.normal(vertex, place) else { continue };
-            let faces = |edge: &u32| edge_normals[*edge as usize].is_some_and(|n| n.dot(&normal) < MAY_FACE);
+            let mut faces = |edge: &u32| {
+                let of_edge = &mut edge_normals[*edge as usize];
+                of_edge
+                    .get_or_insert_with(|| surface.edge_normal(*edge, place))
+                    .is_some_and(|n| n.dot(&normal) < MAY_FACE)
+            };
             near.clear();
-            near.extend(around.edges(x).filter(faces).filter(|&edge| search.is_near(vertex, edge)));
+            near.extend(around.edges(x).filter(|edge| faces(edge)).filter(|&edge| search.is_near(vertex, edge)));
             near.sort_unstable();
             let first = self.edges.len();
             self.edges.extend(near.iter().map(|&edge| Neighbour { edge, can_touch: search.can_touch(vertex, edge) }));
@@ -146,6 +148,8 @@ impl Neighbours {
                 self.end(Comer { vertex, distance });
             }
         }
+        (0..surface.len() as u32).filter(|&v| wanted[v as usize]).for_each(|v| nearing.restart(v));
+        self.nearing = nearing;
     }
 
     /// The edges that were added last are those of a vertex.
