@@ -1,4 +1,4 @@
-//! Cracks with fewer points: tips go on by an eighth of a cell at a time, and walls show no more than the cells do.
+//! Cracks with fewer points: tips go on by a quarter of a cell at a time, and walls show no more than the cells do.
 
 use crate::smooth::SmoothCracks;
 use fissure_plane::distance_to_segment;

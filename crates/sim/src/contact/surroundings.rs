@@ -70,9 +70,9 @@ pub(super) struct Surroundings<'a> {
 }
 
 impl<'a> Surroundings<'a> {
-    /// Looks at the edges of the bins that are `wanted`, for vertices at `place` [m]; others come not within `reach` [m]
-    /// of what is asked for. `slides`: what moves less than this relative to each other has moved alike [m], within one
-    /// piece and otherwise.
+    /// Looks at the edges of the bins that are `wanted`, for vertices at `place` [m]; others are not within `reach` [m]
+    /// of what is asked for. `slides`: what moves less than this relative to each other has moved alike [m], within
+    /// one piece and otherwise.
     pub(super) fn new(
         nearing: &'a Nearing,
         (surface, place): (&Surface, &[Point]),

@@ -1,6 +1,6 @@
 //! Where a division is another one than before: which pairs of a particle and a node it may divide otherwise.
 //!
-//! A tip that gets on by an eighth of a cell changes the way it is drawn to go on over four cells ahead and what it
+//! A tip that gets on by a quarter of a cell changes the way it is drawn to go on over four cells ahead and what it
 //! says of two cells behind it; of all pairs there those of some three cells are divided otherwise.
 
 use super::crossing::apart;
