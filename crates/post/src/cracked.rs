@@ -9,7 +9,7 @@ use crate::edges::MovedLines;
 use crate::error::PostError;
 use crate::explode::{groups, together, ways};
 use crate::extrude::Extrusion;
-use crate::held_open::{parted_points, shifts as held_open};
+use crate::held_open::{LEAST, parted_points, shifts as held_open};
 use crate::history::{attributes, histories};
 use crate::interior::Interior;
 use crate::joined::joined;
@@ -24,8 +24,9 @@ use crate::pinch::part_pinches;
 use crate::relief::Relief;
 use crate::rest_bevel::RestBevel;
 use crate::rest_cut::{RestDivision, rest_cap};
+use crate::rest_needles::blunt_at_rest;
 use crate::short_edges::{Growth, without_short_edges};
-use crate::slivers::{drop_narrow_parts, fill_narrow_holes, without_slivers};
+use crate::slivers::{drop_narrow_parts, fill_narrow_holes, is_sliver, without_slivers};
 use crate::slot::Slot;
 use crate::smooth::SmoothCracks;
 use crate::snap::Grid;
@@ -43,6 +44,10 @@ use std::collections::BTreeMap;
 /// on each other sink in by up to a tenth of a cell, what has no particle of its own by some more, and shards of a few
 /// particles, driven into each other by others, by up to .36 (`glass-impact`).
 const WIDEST_OVERLAP: f64 = 0.4;
+
+/// How far faces of closed cracks are apart that are cut at rest, in shortest edges: a little more than a quarter, so
+/// that programs may merge vertices within 5e-5 of the body, and a crack takes next to nothing of its area.
+const APART: f64 = 0.275;
 
 /// What an edge may become shorter by as its ends go to the grid, in grid steps.
 const ROUNDING: f64 = 3.0;
@@ -81,7 +86,8 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
     for ((crack, parted), shifts) in cracks.cracks.iter().zip(parted).zip(&mut shifts) {
         let shown = widened(crack, shifts);
         let more = if holds_open(options) {
-            held_open(&shown, &parted, grids[crack.body as usize])
+            let rounding = LEAST * grids[crack.body as usize].step;
+            held_open(&shown, &parted, rounding.max(apart(options, size(scene, crack.body))))
         } else if options.shortest_edge == 0.0 {
             continue;
         } else {
@@ -168,6 +174,11 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
 /// depend on the opening and have two sides everywhere.
 fn holds_open(options: &PostOptions) -> bool {
     options.walls == Walls::All || options.cut == Cut::Rest
+}
+
+/// How far faces of closed cracks within a body of some `size` are kept apart where they are cut at rest [m].
+fn apart(options: &PostOptions, size: f64) -> f64 {
+    if options.cut == Cut::Rest { APART * options.shortest_edge * size } else { 0.0 }
 }
 
 /// The longer side of a body at rest [m].
@@ -337,7 +348,7 @@ impl<'a> Solids<'a> {
     /// Parts contours that touch or nearly do, and takes short edges out of them.
     fn tidy(&self, of: &mut Enclosed, growth: Growth) -> Result<(), PostError> {
         self.tidy_once(of, growth)?;
-        if !holds_open(self.options) {
+        if self.options.walls != Walls::All {
             for _ in 0..ROUNDS {
                 if !part_narrows(&mut of.shapes, of.least, growth, &mut of.sources) {
                     break;
@@ -358,7 +369,7 @@ impl<'a> Solids<'a> {
         of.shapes = without_slivers(parted);
         let sources = &mut of.sources;
         let is_drawn = |edge: &Edge, source: &SourceEdge| is_drawn(&body.region, edge, source);
-        if holds_open(self.options) {
+        if self.options.walls == Walls::All {
             without_short_edges(&mut of.shapes, of.least, growth, sources, is_drawn);
             return Ok(());
         }
@@ -407,7 +418,8 @@ impl<'a> Solids<'a> {
     fn at_rest(&self, body: u32, piece: u32, fragments: &[Vec<Vec<SourceEdge>>]) -> Option<Option<Mesh>> {
         let least = self.options.shortest_edge * size(self.scene, body);
         let size = self.options.cap_size;
-        let plain = RestDivision { size, least, keeps_edges: false, unfolds: false };
+        let apart = apart(self.options, self::size(self.scene, body));
+        let plain = RestDivision { size, least, apart, keeps_edges: false, unfolds: false };
         let unfolded = RestDivision { unfolds: true, ..plain };
         let whole = RestDivision { least: 0.0, keeps_edges: true, ..plain };
         [unfolded, plain, whole].into_iter().find_map(|division| self.at_rest_with(body, piece, fragments, division))
@@ -431,11 +443,15 @@ impl<'a> Solids<'a> {
         let is_drawn = |edge: &SourceEdge| edge.slot == Slot::Outside && edge.carried.iter().all(is_corner);
         let mut sources = Vec::new();
         let mut caps = Vec::with_capacity(fragments.len());
-        for boundaries in fragments {
-            let boundaries = joined(boundaries, division.least, grids[1], is_drawn);
+        for boundaries in fragments.iter().filter(|boundaries| !is_rounding(boundaries, grids[1])) {
+            let mut boundaries = joined(boundaries, division.least, grids[1], is_drawn);
+            blunt_at_rest(&mut boundaries, division.least);
             let of = rest_cap(&boundaries, sources.len(), division, grids, interior, piece)?;
             caps.push((of.cap, of.carried));
             sources.extend(of.sources);
+        }
+        if caps.is_empty() {
+            return None;
         }
         caps.retain(|(cap, _)| area(&cap.shape, grid) >= self.options.smallest_fragment);
         let extrusion = self.extrusion(body, &sources);
@@ -546,6 +562,16 @@ struct SolidCap {
     bevel: Vec<BevelCorner>,
     /// What its corners within carry.
     within: Vec<Carried>,
+}
+
+/// Whether what boundaries enclose at rest, on this `grid`, is no more than rounding: between cracks that lie on each
+/// other.
+fn is_rounding(boundaries: &[Vec<SourceEdge>], grid: Grid) -> bool {
+    let at_rest = |edge: &SourceEdge| {
+        let [a, b] = [0, 1].map(|end| grid.snap(edge.carried[end].rest));
+        Edge { a, b, source: SourceIndex(0) }
+    };
+    boundaries.first().is_none_or(|outer| is_sliver(&outer.iter().map(at_rest).collect::<Vec<_>>()))
 }
 
 /// Area of a polygon [m²].

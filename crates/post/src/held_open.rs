@@ -1,17 +1,16 @@
 //! Cracks inside a fragment, held open by a hair so that they have walls.
 
-use crate::snap::Grid;
 use crate::widening::Shift;
 use fissure_scene::{BoundaryEdge, CrackEnd, CrackFrame, Fragments, Line, Point, Vector};
 use rustc_hash::FxHashMap;
 
 /// Least width of a crack that is held open, in grid steps: one that narrows to tips right beside its widest point is
 /// still twice as wide as what counts as rounding.
-const LEAST: f64 = 8.0;
+pub(crate) const LEAST: f64 = 8.0;
 
-/// For each point of `crack` how far its faces have to move so that the crack is open there. `parted`: the points
-/// that part two fragments, where nothing moves.
-pub(crate) fn shifts(crack: &CrackFrame, parted: &[bool], grid: Grid) -> Vec<Shift> {
+/// For each point of `crack` how far its faces have to move so that the crack is open by `width` [m] there. `parted`:
+/// the points that part two fragments, where nothing moves.
+pub(crate) fn shifts(crack: &CrackFrame, parted: &[bool], width: f64) -> Vec<Shift> {
     let last = crack.rest.len().saturating_sub(1);
     let middle = |i: usize| nalgebra::center(&crack.above[i], &crack.below[i]);
     let shift = |i: usize| {
@@ -21,7 +20,7 @@ pub(crate) fn shifts(crack: &CrackFrame, parted: &[bool], grid: Grid) -> Vec<Shi
         }
         let along = middle((i + 1).min(last)) - middle(i.saturating_sub(1));
         let normal = Vector::new(-along.y, along.x).try_normalize(0.0).unwrap_or_default();
-        let missing = LEAST * grid.step - (crack.above[i] - crack.below[i]).dot(&normal);
+        let missing = width - (crack.above[i] - crack.below[i]).dot(&normal);
         let above = normal * (0.5 * missing.max(0.0));
         Shift { above, below: -above }
     };

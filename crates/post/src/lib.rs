@@ -9,7 +9,8 @@
 //!    length of the material at their ends. `outline`: a body without its cracks.
 //!    `smooth`: paths of cracks without their zigzag. `rest_cut`: triangles at rest that the material carries, in place
 //!    of steps 3 to 7, `carrying`; `sight`: on which side of cracks, `drawn_along`: with faces that are shown
-//!    elsewhere, `untangled`: without folds.
+//!    elsewhere, `untangled`: without folds; `rest_room`: no corners beside each other, `rest_needles`: no needles at
+//!    rest, `parted_corners`: those in one place at rest kept apart.
 //!    `crumbs`: fragments of a few particles move as these do. `closed`: cracks within a fragment are closed where they
 //!    are hardly open.
 //! 3. `boolean`: a fragment is where its own edges wind around a place at least once. An open crack in it takes one
@@ -72,6 +73,7 @@ mod options;
 mod outline;
 mod overlaps;
 mod packed;
+mod parted_corners;
 mod particles;
 mod pieces;
 mod pinch;
@@ -82,6 +84,8 @@ mod record;
 mod relief;
 mod rest_bevel;
 mod rest_cut;
+mod rest_needles;
+mod rest_room;
 mod rigid;
 mod rough_walls;
 #[cfg(feature = "files")]

@@ -7,6 +7,8 @@
 use crate::boolean::{Edge, Shape, SourceIndex};
 use crate::carrying::{CarriedCorners, Carrying};
 use crate::interior::Interior;
+use crate::parted_corners::part_corners;
+use crate::rest_room::{is_crowded, with_room};
 use crate::snap::{Grid, GridPoint};
 use crate::source::{Carried, SourceEdge};
 use crate::triangulate::{Cap, inwards};
@@ -26,8 +28,10 @@ const MARGIN: f64 = 0.5;
 /// Corners of that frame.
 const FRAME: usize = 4;
 
-/// Parts of edges are longer than so many grid steps.
-const SHORTEST_PART: f64 = 8.0;
+/// New corners are farther than so many grid steps from others, and than so many shortest edges: with these as long as
+/// twice the distance at which readers merge vertices, none is merged where the material is compressed by a third.
+const ROOM_STEPS: f64 = 8.0;
+const ROOM: f64 = 0.75;
 
 /// How the triangles of a fragment at rest are made.
 #[derive(Debug, Clone, Copy)]
@@ -36,6 +40,8 @@ pub(crate) struct RestDivision {
     pub(crate) size: Option<f64>,
     /// Triangles so small that their edges are shorter are not divided [m].
     pub(crate) least: f64,
+    /// Corners that lie in one place at rest are shown so far apart [m].
+    pub(crate) apart: f64,
     /// Whether edges of the boundary get no new corners.
     pub(crate) keeps_edges: bool,
     /// Whether corners of the boundary may be elsewhere where it has turned over.
@@ -95,7 +101,9 @@ pub(crate) fn rest_cap(
     let edges: Vec<&SourceEdge> = boundaries.iter().flatten().collect();
     let told: Vec<[Carried; 2]> =
         shape.iter().flatten().map(|edge| [edge.a, edge.b].map(|p| edges[edge.source.0 as usize].at(p))).collect();
-    let shown: Vec<GridPoint> = shape.iter().flatten().map(|edge| edge.a).collect();
+    let mut shown: Vec<GridPoint> = shape.iter().flatten().map(|edge| edge.a).collect();
+    let lengths: Vec<usize> = shape.iter().map(Vec::len).collect();
+    part_corners(&mut shown, &places[..count], &lengths, division.apart / grid.step, rest_grid);
     let speeds: Vec<Vector> = told.iter().map(|[start, _]| start.velocity).collect();
     let carrying = Carrying { interior, grid, piece, places: &places, triangles: &found };
     let CarriedCorners { now, velocities } = carrying.corners(&shown, &speeds, division.unfolds);
@@ -196,23 +204,7 @@ fn rest_place(triangles: &Delaunay, vertex: usize, grid: Grid) -> Point {
 }
 
 /// The places with the boundary among the edges; none if edges cross or have no length. `step`: of the grid [m].
-///
-/// Between lines that are hardly apart edges would be divided again and again: then they stay whole.
 fn triangles(corners: &[Vec<usize>], places: Vec<Point2<f64>>, division: RestDivision, step: f64) -> Option<Delaunay> {
-    let refined = refined(corners, places.clone(), division, step)?;
-    let count = places.len() + FRAME;
-    let is_short = |edge: spade::handles::UndirectedEdgeHandle<'_, _, _, _, _>| {
-        let is_new = edge.vertices().iter().any(|vertex| vertex.index() >= count);
-        is_new && edge.is_constraint_edge() && edge.length_2() < SHORTEST_PART * SHORTEST_PART
-    };
-    if division.keeps_edges || !refined.undirected_edges().any(is_short) {
-        return Some(refined);
-    }
-    self::refined(corners, places, RestDivision { keeps_edges: true, ..division }, step)
-}
-
-/// The same, with parts of edges however short.
-fn refined(corners: &[Vec<usize>], places: Vec<Point2<f64>>, division: RestDivision, step: f64) -> Option<Delaunay> {
     let pairs = corners.iter().flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)));
     let edges: BTreeSet<[usize; 2]> = pairs.map(|(&a, &b)| [a.min(b), a.max(b)]).collect();
     if edges.iter().any(|[a, b]| a == b) {
@@ -220,15 +212,36 @@ fn refined(corners: &[Vec<usize>], places: Vec<Point2<f64>>, division: RestDivis
     }
     // What lies outside is divided too: `spade` does not know it from what lies beyond a crack. With a frame around it
     // has no needles between the boundary and its convex hull.
-    let count = places.len() + FRAME;
+    let old = places.len();
     let (low, high) = bounds(&places);
     let margin = MARGIN * (high.x - low.x).max(high.y - low.y);
     let [left, right] = [low.x - margin, high.x + margin];
     let [bottom, top] = [low.y - margin, high.y + margin];
     let mut places = places;
     places.extend([(left, bottom), (right, bottom), (right, top), (left, top)].map(|(x, y)| Point2::new(x, y)));
+    let found = refined(places.clone(), edges.iter().copied().collect(), division, step)?;
+    let fine = division.size.map_or(f64::INFINITY, |size| 0.25 * size);
+    let room = ROOM_STEPS.max((ROOM * division.least).min(fine) / step);
+    if division.keeps_edges || !is_crowded(&found, old + FRAME, room) {
+        return Some(found);
+    }
+    let kept = RestDivision { keeps_edges: true, ..division };
+    let (spread, numbers) = with_room(&found, old + FRAME, room);
+    let chains = Chains::new(&found, old);
+    let mut parts = Vec::with_capacity(edges.len());
+    for &[a, b] in &edges {
+        let between = chains.between(a, b)?.iter().filter_map(|&corner| numbers[corner]);
+        let chain: Vec<usize> = std::iter::once(a).chain(between).chain([b]).collect();
+        parts.extend(chain.windows(2).map(|pair| [pair[0], pair[1]]));
+    }
+    refined(spread, parts, kept, step).or_else(|| refined(places, edges.into_iter().collect(), kept, step))
+}
+
+/// Places with `edges` between them, divided into triangles without small angles. `step`: of the grid [m].
+fn refined(places: Vec<Point2<f64>>, edges: Vec<[usize; 2]>, division: RestDivision, step: f64) -> Option<Delaunay> {
+    let count = places.len();
     let mut crosses = false;
-    let mut triangles = Delaunay::try_bulk_load_cdt(places, edges.into_iter().collect(), |_| crosses = true).ok()?;
+    let mut triangles = Delaunay::try_bulk_load_cdt(places, edges, |_| crosses = true).ok()?;
     if crosses || triangles.num_vertices() != count {
         return None;
     }

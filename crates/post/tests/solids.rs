@@ -469,7 +469,46 @@ fn caps_cut_at_rest_have_no_needles() {
         }
     }
     let area: f64 = triangles.iter().map(|[a, b, c]| 0.5 * (b - a).perp(&(c - a))).sum();
-    assert!((area - 400.0).abs() < 1e-3, "{area}");
+    // 26.8 m of closed cracks, held open by 5.5e-5 of 20 m but at their tips.
+    let held_open = 26.8 * 5.5e-5 * 20.0;
+    assert!((0.8..1.05).contains(&((400.0 - area) / held_open)), "{area}");
+}
+
+/// Truth: what the guide promises. Closed cracks within a fragment that is cut at rest, one of which ends on the
+/// other, and which are pressed into each other or slid: vertices within 5e-5 of the body may be merged, whatever
+/// lies there.
+#[test]
+fn what_is_cut_at_rest_may_be_merged_by_distance() {
+    let region = square(20.0);
+    let scene = scene(region.clone());
+    for (sink, slide) in [(0.0, 0.0), (0.05, 0.0), (0.0, 0.1), (0.02, 0.3), (-0.0005, 0.0)] {
+        let crack = |rest: Vec<Point>, across: Vector, start| {
+            let along = Vector::new(across.y, -across.x);
+            let half = -0.5 * sink * across + 0.5 * slide * along;
+            let still = |k: usize| if k + 1 == rest.len() { Vector::zeros() } else { half };
+            let above: Vec<Vector> = (0..rest.len()).map(still).collect();
+            let below = above.iter().map(|way| -way).collect();
+            Opened { rest, above, below, start, end: CrackEnd::Tip }
+        };
+        let row = (0..=12).map(|k| Point::new(f64::from(k), 10.0 + 0.01 * f64::from(k * k))).collect();
+        let column = (0..=6).map(|k| Point::new(6.0 + 0.1 * f64::from(k), 10.36 + f64::from(k))).collect();
+        let mouth = crack(row, Vector::new(0.0, 1.0), CrackEnd::Mouth);
+        let branch = crack(column, Vector::new(-1.0, 0.0), CrackEnd::Junction { crack: 0 });
+        let frame = frame(&region, 3, &[mouth, branch]);
+        let options = PostOptions { cut: Cut::Rest, ..options(&scene) };
+        let meshes = post_frame(&scene, &frame, &options).unwrap().parts.remove(0).1;
+        for mesh in &meshes {
+            let mut places: Vec<[f64; 3]> = mesh.vertices.iter().map(|v| v.position).collect();
+            places.sort_by(|p, q| p.partial_cmp(q).unwrap());
+            places.dedup();
+            for (i, p) in places.iter().enumerate() {
+                for q in places[i + 1..].iter().take_while(|q| q[0] - p[0] < 1e-3) {
+                    let apart = (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
+                    assert!(apart > 5e-5 * 20.0, "{apart} at {p:?}, {sink} {slide}");
+                }
+            }
+        }
+    }
 }
 
 /// Truth: by hand. A zigzag that cuts a square in two: smoothed, it keeps the areas of both halves and their sum to the
@@ -893,9 +932,10 @@ fn smooth_paths_keep_what_ends_on_them() {
     frame.particles = particles(&region, |p| (u32::from(p.y < 10.15), Vector::zeros()));
     let options = PostOptions { smoothing: 0.5, cut: Cut::Rest, ..options(&scene) };
     let meshes = post_frame(&scene, &frame, &options).unwrap().parts.remove(0).1;
-    let ends = |mesh: &Mesh| mesh.vertices.iter().any(|v| (v.position[0] - on.x).hypot(v.position[1] - on.y) < 1e-4);
+    let ends = |mesh: &Mesh| mesh.vertices.iter().any(|v| (v.position[0] - on.x).hypot(v.position[1] - on.y) < 2e-3);
     assert!(meshes.len() == 2 && meshes.iter().all(ends), "{}", meshes.len());
-    assert!((area(&meshes) - 400.0).abs() < 1e-3);
+    // The branch is held open by 5.5e-5 of 20 m.
+    assert!((area(&meshes) - 400.0).abs() < 1e-2);
     let folded = front(&meshes).into_iter().filter(|[a, b, c]| (b - a).perp(&(c - a)) <= 0.0).count();
     assert_eq!(folded, 0);
 }

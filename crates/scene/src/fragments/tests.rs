@@ -136,3 +136,19 @@ proptest! {
         prop_assert!((total - 16.0).abs() < 1e-9);
     }
 }
+
+/// Truth: by hand. Two cracks that run into one and lie on each other from there on: there is nothing between them, and
+/// no fragment has a boundary around that.
+#[test]
+fn nothing_lies_between_cracks_on_each_other() {
+    let cracks = [
+        (points(&[[0.0, 1.0], [1.0, 1.0], [2.0, 1.0]]), [MOUTH, TIP]),
+        (points(&[[0.5, 0.0], [1.0, 1.0], [2.0, 1.0]]), [MOUTH, TIP]),
+    ];
+    let found = cut(&plate(), &cracks);
+    for boundary in found.list().iter().flat_map(|fragment| &fragment.boundaries) {
+        assert!(boundary.len() > 2, "{boundary:?}");
+    }
+    let all: f64 = found.list().iter().map(area).sum();
+    assert!((all - 15.0).abs() < 1e-12, "{all}");
+}

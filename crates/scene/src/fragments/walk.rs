@@ -23,6 +23,15 @@ struct Loop {
     area: f64,
     /// What it hangs together with.
     component: usize,
+    /// Whether it passes all that it hangs together with.
+    is_all: bool,
+}
+
+impl Loop {
+    /// Whether there is nothing within, nor around: it runs between two cracks that lie on each other.
+    fn is_nothing(&self) -> bool {
+        self.area == 0.0 && !self.is_all
+    }
 }
 
 /// The fragments that `lines` bound, and what the outer boundary of each contains with its area [m²].
@@ -35,7 +44,7 @@ pub(super) fn fragments(lines: &Lines) -> (Vec<Fragment>, Vec<(RingRows, f64)>) 
     let insides: Vec<_> = outer.iter().map(|&i| inside(&loops[i].boundary)).collect();
     let mut found: Vec<Fragment> =
         outer.iter().map(|&i| Fragment { body: loops[i].body, boundaries: vec![loops[i].boundary.clone()] }).collect();
-    for &i in order.iter().filter(|&&i| loops[i].area <= 0.0) {
+    for &i in order.iter().filter(|&&i| loops[i].area <= 0.0 && !loops[i].is_nothing()) {
         let hole = &loops[i];
         let place = hole.boundary[0].rest[0];
         // What hangs together with a hole touches it, but does not lie around it.
@@ -118,6 +127,8 @@ fn clockwise(at: Point, back: Point, p: Point, q: Point) -> Ordering {
 fn loops(lines: &Lines, ways: &[Way]) -> Vec<Loop> {
     let next = following(lines, ways);
     let components = components(lines, ways);
+    let mut sizes = vec![0; components.len()];
+    ways.iter().for_each(|way| sizes[components[way.from]] += 1);
     let mut loop_of = vec![usize::MAX; ways.len()];
     let mut found: Vec<Vec<usize>> = Vec::new();
     for start in 0..ways.len() {
@@ -143,7 +154,8 @@ fn loops(lines: &Lines, ways: &[Way]) -> Vec<Loop> {
         };
         let area = 0.5 * members.iter().filter(is_single).map(twice).sum::<f64>();
         let boundary = members.iter().map(|&w| ways[w].edge).collect();
-        Loop { body: first.body, boundary, area, component: components[first.from] }
+        let is_all = members.len() == sizes[components[first.from]];
+        Loop { body: first.body, boundary, area, component: components[first.from], is_all }
     };
     found.into_iter().enumerate().map(of).collect()
 }
