@@ -43,8 +43,6 @@ pub(crate) struct Tip {
     pub(crate) since_division: f64,
     /// Steps until it is measured again.
     pub(crate) steps_to_look: u32,
-    /// Time since it was measured last [s].
-    pub(crate) time_since_look: f64,
     /// Crack length this tip has added so far [m].
     pub(crate) grown: f64,
     /// What [`Tip::run`] was at the last frame [m].
@@ -82,7 +80,6 @@ impl Tip {
             time_at_rest: 0.0,
             since_division: f64::INFINITY,
             steps_to_look: 0,
-            time_since_look: 0.0,
             grown: 0.0,
             run_at_frame: 0.0,
             assessment: Assessment::default(),
@@ -190,7 +187,6 @@ impl Tip {
                 &self.grown,
                 &self.run_at_frame,
                 &self.time_at_rest,
-                &self.time_since_look,
                 &self.balance,
                 &self.most_balance,
                 &self.left_over,

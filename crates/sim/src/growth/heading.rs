@@ -19,14 +19,21 @@ fn asked(cracks: &Cracks, id: TipId, assessed: &Assessment, scene: &Scene) -> Ve
     turned(cracks.ahead(id, DIRECTION_LENGTH * scene.cell_size), assessed.kink_angle)
 }
 
-/// The heading of a tip after one more measurement.
+/// The heading of a tip after one more measurement, `time_step` [s] after the last one.
 ///
 /// Every increment sends out waves, and the ratio of the modes swings with them at a period that is the lattice's, not
 /// the body's. A running tip follows the mean over the time that a shear wave takes for a few cells; a resting one has
 /// no waves of its own and starts as the stress is. Both go straight on from a kink that they have made themselves;
 /// where toughness varies, they remember what the stress asked for before it, because it may have been made to avoid
 /// what is tough: judged anew from every kink, many small turns would cost next to nothing.
-pub(crate) fn heading(cracks: &Cracks, id: TipId, assessed: &Assessment, scene: &Scene, elastic: &[Elastic]) -> Vector {
+pub(crate) fn heading(
+    cracks: &Cracks,
+    id: TipId,
+    assessed: &Assessment,
+    scene: &Scene,
+    elastic: &[Elastic],
+    time_step: f64,
+) -> Vector {
     let now = asked(cracks, id, assessed, scene);
     let Some(tip) = cracks.tip(id) else { return now };
     if tip.heading == Vector::zeros() {
@@ -43,7 +50,7 @@ pub(crate) fn heading(cracks: &Cracks, id: TipId, assessed: &Assessment, scene: 
     }
     let slowest = elastic.iter().map(Elastic::shear_wave_speed).fold(f64::INFINITY, f64::min);
     let window = HEADING_CELLS * scene.cell_size / slowest;
-    tip.heading + (now - tip.heading) * (1.0 - (-tip.time_since_look / window).exp())
+    tip.heading + (now - tip.heading) * (1.0 - (-time_step / window).exp())
 }
 
 /// Direction of the last segment of a crack with a kink nearer to its tip than `over` [m], of which the tip has made

@@ -38,10 +38,6 @@ const FAR_FROM_GROWTH: f64 = 0.7;
 /// them, half a radius of the integral.
 const STEPS_BETWEEN_LOOKS: u32 = 4;
 
-/// A tip that runs is looked at once in so many steps: its account alone says how far it goes, and its direction and
-/// its pace are means over several such times.
-const STEPS_BETWEEN_LOOKS_OF_RUNNERS: u32 = 2;
-
 /// A resting tip whose K_eq was below this part of the toughness when it was measured last is asked first for what
 /// costs less than a look and says that it is far from growth still.
 const ASKS_J: f64 = 0.45;
@@ -83,30 +79,22 @@ impl Simulation {
         let Self { scene, elastic, solver, state, counts, stages, contours, spares_looks, .. } = self;
         let gauge = Gauge { scene, elastic };
         let every = is_last || !scene.growth.enabled;
-        // Tips that are looked at in this step, or are on their way without.
-        let mut live: Vec<(TipId, bool)> = Vec::new();
-        for id in state.cracks.live() {
-            let Some(tip) = state.cracks.tip_mut(id) else { continue };
-            let waits = tip.steps_to_look > 0 && !every;
-            tip.steps_to_look = if waits { tip.steps_to_look - 1 } else { 0 };
-            tip.time_since_look += time_step;
-            if !waits || tip.state == TipState::Growing {
-                live.push((id, !waits));
-            }
-        }
+        let mut live = state.cracks.live();
+        live.retain(|&id| {
+            let Some(tip) = state.cracks.tip_mut(id) else { return false };
+            let wait = tip.steps_to_look > 0 && !every;
+            tip.steps_to_look = if wait { tip.steps_to_look - 1 } else { 0 };
+            !wait
+        });
         let cracks = &state.cracks;
         let spares = *spares_looks && !every;
-        // None: not looked at, or at rest and too far from growth to be.
+        // None: at rest, and too far from growth to be looked at.
         let mut assessed: Vec<Option<Assessment>> = Vec::with_capacity(live.len());
         contours.clear();
         stages.enter(Stage::Motion);
         let mut observe = |moment: &dyn Observed| {
             stages.enter(Stage::Looks);
-            for &(id, is_looked_at) in &live {
-                if !is_looked_at {
-                    assessed.push(None);
-                    continue;
-                }
+            for &id in &live {
                 let toughness = if spares { tough_at_rest(cracks, id, scene) } else { None };
                 if toughness.is_some_and(|toughness| gauge.is_below(moment, cracks, id, FAR_FROM_GROWTH * toughness)) {
                     assessed.push(None);
@@ -122,15 +110,14 @@ impl Simulation {
         state.steps += 1;
         counts.steps += 1;
         counts.looks += assessed.iter().flatten().count() as u64;
-        for (&(id, is_looked_at), m) in live.iter().zip(&mut assessed) {
+        for (&id, m) in live.iter().zip(&mut assessed) {
             let Some(m) = m else {
-                let of = state.cracks.tip_mut(id).filter(|_| is_looked_at);
-                of.into_iter().for_each(|tip| tip.steps_to_look = STEPS_BETWEEN_LOOKS - 1);
+                state.cracks.tip_mut(id).into_iter().for_each(|tip| tip.steps_to_look = STEPS_BETWEEN_LOOKS - 1);
                 continue;
             };
-            let heading = growth::heading(&state.cracks, id, m, scene, elastic);
+            let heading = growth::heading(&state.cracks, id, m, scene, elastic, time_step);
             if let Some(tip) = state.cracks.tip_mut(id) {
-                (tip.heading, tip.time_since_look) = (heading, 0.0);
+                tip.heading = heading;
             }
             m.fracture_toughness = growth::toughness_ahead(&state.cracks, id, m, scene);
             if let Some(tip) = state.cracks.tip_mut(id) {
@@ -144,21 +131,11 @@ impl Simulation {
         let time = state.time + time_step;
         self.settle_strains();
         let mut tips = Vec::with_capacity(live.len());
-        for ((id, is_looked_at), assessed) in live.into_iter().zip(assessed) {
-            let Some(tip) = self.state.cracks.tip(id) else { continue };
-            // What has not been measured anew is as it was.
-            let mut now = assessed.unwrap_or(tip.assessment);
-            if !is_looked_at {
-                now.fracture_toughness = growth::toughness_ahead(&self.state.cracks, id, &now, &self.scene);
-            }
-            let runner = self.ready(id, now, time, time_step);
-            if let (true, true, Some(tip)) = (is_looked_at, runner.runs, self.state.cracks.tip_mut(id)) {
-                tip.steps_to_look = STEPS_BETWEEN_LOOKS_OF_RUNNERS - 1;
-            }
-            // One at rest that need not be looked at does not grow.
-            if assessed.is_some() || !is_looked_at {
-                tips.push(runner);
-            }
+        for (id, assessed) in live.into_iter().zip(assessed) {
+            // What has not been measured anew is as it was; such a tip does not grow.
+            let last = self.state.cracks.tip(id).map(|tip| tip.assessment).unwrap_or_default();
+            let runner = self.ready(id, assessed.unwrap_or(last), time, time_step);
+            tips.extend(assessed.map(|_| runner));
         }
         self.grow(tips, time);
         self.branch_off(time);
