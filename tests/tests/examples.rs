@@ -65,7 +65,7 @@ fn hard_discs_break_in_two() {
 
 #[test]
 fn letters_crack_along_their_guides() {
-    let (scene, frame) = solve("logo", &["grid.particle_spacing=0.02"]);
+    let (scene, frame) = solve("logo", &["grid.particle_spacing=0.022"]);
     for (crack, drawn) in frame.cracks.iter().zip(&scene.cracks) {
         let guide = drawn.end_guide.as_ref().or(drawn.start_guide.as_ref()).unwrap();
         let mut path = drawn.points.clone();
