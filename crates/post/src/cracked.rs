@@ -2,6 +2,7 @@
 
 use crate::bevel::{BevelCorner, BevelSize, BevelledCap};
 use crate::body_names::body_names;
+use crate::body_size::body_size;
 use crate::boolean::{Edge, Shape, SourceIndex, common, material, twice_area};
 use crate::closed::shifts as closed;
 use crate::crumbs::hold_crumb;
@@ -48,6 +49,8 @@ const WIDEST_OVERLAP: f64 = 0.4;
 /// How far faces of closed cracks are apart that are cut at rest, in shortest edges: a little more than a quarter, so
 /// that programs may merge vertices within 5e-5 of the body, and a crack takes next to nothing of its area.
 const APART: f64 = 0.275;
+/// The same with rough walls, which come nearer where the two sides have turned differently.
+const ROUGH_APART: f64 = 0.35;
 
 /// What an edge may become shorter by as its ends go to the grid, in grid steps.
 const ROUNDING: f64 = 3.0;
@@ -87,17 +90,15 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
         let shown = widened(crack, shifts);
         let more = if holds_open(options) {
             let rounding = LEAST * grids[crack.body as usize].step;
-            held_open(&shown, &parted, rounding.max(apart(options, size(scene, crack.body))))
+            held_open(&shown, &parted, rounding.max(apart(options, body_size(scene, crack.body))))
         } else if options.shortest_edge == 0.0 {
             continue;
         } else {
-            closed(&shown, &parted, options.shortest_edge * size(scene, crack.body))
+            closed(&shown, &parted, options.shortest_edge * body_size(scene, crack.body))
         };
         shifts.iter_mut().zip(more).for_each(|(shift, more)| *shift = *shift + more);
     }
-    let relief = options
-        .roughness
-        .map(|roughness| Relief::new(roughness, options.thickness, moved, &cracks.cracks, &cracks.offsets));
+    let relief = Relief::new(scene, options, moved, &cracks);
     // Faces that only move into the material leave no fragment beyond itself.
     let takes_off = |settings: &&OpeningSettings| settings.factor.value(frame.time) >= 1.0;
     let still = || shifts.iter().map(|of_crack| vec![Shift::default(); of_crack.len()]).collect();
@@ -178,13 +179,8 @@ fn holds_open(options: &PostOptions) -> bool {
 
 /// How far faces of closed cracks within a body of some `size` are kept apart where they are cut at rest [m].
 fn apart(options: &PostOptions, size: f64) -> f64 {
-    if options.cut == Cut::Rest { APART * options.shortest_edge * size } else { 0.0 }
-}
-
-/// The longer side of a body at rest [m].
-fn size(scene: &Scene, body: u32) -> f64 {
-    let (low, high) = scene.bodies[body as usize].region.bounds();
-    (high - low).amax()
+    let apart = if options.roughness.is_some() { ROUGH_APART } else { APART };
+    if options.cut == Cut::Rest { apart * options.shortest_edge * size } else { 0.0 }
 }
 
 /// How far the faces of each crack are moved at each of its points: as it is to be shown.
@@ -329,7 +325,7 @@ impl<'a> Solids<'a> {
         shortest: f64,
     ) -> Result<Enclosed, PostError> {
         let grid = self.grids[body as usize];
-        let least = shortest * size(self.scene, body) / grid.step;
+        let least = shortest * body_size(self.scene, body) / grid.step;
         let mut shapes = material(&sources);
         if let Some(own) = self.own.get(&(body, piece)) {
             // A crumb whose faces all move by more than its size would be turned inside out twice, and grow.
@@ -416,9 +412,9 @@ impl<'a> Solids<'a> {
     /// Extrudes the triangles of `fragments` at rest, moved with the material. None where that is no solid: where the
     /// material has folded over so that one corner lies on another. Nothing in it where it is smaller than asked for.
     fn at_rest(&self, body: u32, piece: u32, fragments: &[Vec<Vec<SourceEdge>>]) -> Option<Option<Mesh>> {
-        let least = self.options.shortest_edge * size(self.scene, body);
+        let least = self.options.shortest_edge * body_size(self.scene, body);
         let size = self.options.cap_size;
-        let apart = apart(self.options, self::size(self.scene, body));
+        let apart = apart(self.options, body_size(self.scene, body));
         let plain = RestDivision { size, least, apart, keeps_edges: false, unfolds: false };
         let unfolded = RestDivision { unfolds: true, ..plain };
         let whole = RestDivision { least: 0.0, keeps_edges: true, ..plain };
@@ -516,7 +512,7 @@ impl<'a> Solids<'a> {
             thickness: self.options.thickness,
             crease_angle: self.options.crease_angle,
             texture_origin: self.scene.bodies[body as usize].region.bounds().0,
-            texture_size: size(self.scene, body),
+            texture_size: body_size(self.scene, body),
             at_rest: self.options.cut == Cut::Rest,
             relief: self.relief,
             bevel: self.bevel(body),
@@ -526,7 +522,7 @@ impl<'a> Solids<'a> {
     /// How edges are bevelled, if they are.
     fn bevel(&self, body: u32) -> Option<BevelSize> {
         let step = self.grids[body as usize].step;
-        let least = self.options.shortest_edge * size(self.scene, body) / step;
+        let least = self.options.shortest_edge * body_size(self.scene, body) / step;
         (self.options.bevel > 0.0).then_some(BevelSize { width: self.options.bevel / step, least })
     }
 

@@ -16,9 +16,7 @@ use fissure_scene::{CrackFrame, Fragments, Frame, Scene};
 /// One mesh per crack: both faces over the thickness, normals into the opening. Closed cracks have faces too.
 pub(crate) fn face_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Vec<Mesh> {
     let cracks = SmoothCracks::new(scene, frame, &Fragments::of_frame(frame), options.smoothing);
-    let relief = options
-        .roughness
-        .map(|roughness| Relief::new(roughness, options.thickness, frame, &cracks.cracks, &cracks.offsets));
+    let relief = Relief::new(scene, options, frame, &cracks);
     let attributes = attributes(frame, options);
     let known = if attributes.is_empty() { None } else { histories(frame) };
     let mut known = known.unwrap_or_default().into_iter();

@@ -25,7 +25,8 @@
 //! 7. `overlaps`: fragments that lie in each other a little share the middle; then steps 4 to 6 once more.
 //! 8. `triangulate`, `interior`, `extrude`: caps of triangles without small angles, and walls, with normals, texture
 //!    coordinates, velocities and material slots.
-//!    `relief`, `rough_walls`: walls of cracks that are not plane, `bevel`: edges that are not sharp, where asked for.
+//!    `relief`, `rough_lines`, `rough_walls`: walls of cracks that are not plane, `bevel`: edges that are not sharp,
+//!    where asked for.
 //! 9. [`Mesh::check`]: closed, manifold, oriented, volume = area × thickness, in the precision of the file.
 //! 10. `formats`: the bytes of files, one module per format; `write`, `manifest`: the files, with the feature `files`,
 //!     which is on by default.
@@ -42,6 +43,7 @@ extern crate self as fissure_post;
 pub mod bench;
 mod bevel;
 mod body_names;
+mod body_size;
 mod boolean;
 mod carrying;
 mod closed;
@@ -87,6 +89,7 @@ mod rest_cut;
 mod rest_needles;
 mod rest_room;
 mod rigid;
+mod rough_lines;
 mod rough_walls;
 #[cfg(feature = "files")]
 mod sequences;

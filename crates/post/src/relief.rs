@@ -8,8 +8,11 @@
 //! r is the amplitude, or less: within a part of the distance to other lines, to tips, and to corners too sharp for it,
 //! walls that are moved cannot come to cross each other.
 
+use crate::body_size::body_size;
+use crate::options::PostOptions;
+use crate::smooth::SmoothCracks;
 use fissure_plane::distance_to_segment;
-use fissure_scene::{CrackEnd, CrackFrame, Frame, Point, Roughness, Vector};
+use fissure_scene::{CrackEnd, Frame, Point, Roughness, Scene, Vector, Walls};
 use std::collections::BTreeMap;
 
 /// What a wall may move by, as a part of its distance from others. Two that come towards each other leave a third.
@@ -17,6 +20,13 @@ const ROOM: f64 = 1.0 / 3.0;
 /// The same of the distance from a tip: a crack that is open by a few hundredths of that has faces that would cross if
 /// they moved by more, as they have other corners.
 const ROOM_AT_TIP: f64 = 0.05;
+/// No wall moves nearer than so many shortest edges to others, nor within so many of a tip: readers merge vertices over
+/// half of one.
+const CLEAR: f64 = 1.0;
+const CLEAR_AT_TIP: f64 = 5.0;
+/// Vertices of walls are farther from each other than so many shortest edges; where they are cut at rest.
+const APART: f64 = 0.52;
+const APART_AT_REST: f64 = 0.26;
 /// What lies along the same crack, not much farther away along it than straight, is the wall itself.
 const WINDING: f64 = 2.0;
 /// Weights of the relief and of one of half its length.
@@ -27,9 +37,11 @@ const WEIGHTS: [f64; 2] = [2.0 / 3.0, 1.0 / 3.0];
 pub(crate) struct Relief {
     settings: Roughness,
     thickness: f64,
+    /// The shortest edge, as a part of the size of a body; none where faces may lie on each other.
+    shortest: f64,
     paths: Vec<Path>,
-    /// Tips at rest [m].
-    tips: Vec<Point>,
+    /// Tips at rest, and how far from them walls stay [m].
+    tips: Vec<(Point, f64)>,
     /// Width of a bin [m], and what is in each or within its width of it.
     bin: f64,
     obstacles: BTreeMap<[i32; 2], Vec<Obstacle>>,
@@ -53,6 +65,8 @@ struct Obstacle {
     ends: [Point; 2],
     /// What a wall may move by right there [m].
     room: f64,
+    /// How far off walls do not move by more than that [m].
+    clear: f64,
     /// The crack it is of, and where along it it begins [m]: no obstacle to what is near along the same crack.
     along: Option<(usize, f64)>,
 }
@@ -82,42 +96,42 @@ impl Profile<'_> {
 }
 
 impl Relief {
-    /// The relief of solids of so much `thickness` [m]; `cracks` of the frame at rest, as they are shown.
-    pub(crate) fn new(
-        settings: Roughness,
-        thickness: f64,
-        frame: &Frame,
-        cracks: &[CrackFrame],
-        offsets: &[Vec<Vector>],
-    ) -> Self {
+    /// The relief that `options` ask for, if any; `cracks` of the frame at rest, as they are shown.
+    pub(crate) fn new(scene: &Scene, options: &PostOptions, frame: &Frame, cracks: &SmoothCracks<'_>) -> Option<Self> {
+        let settings = options.roughness?;
+        let shortest = if options.walls == Walls::All { 0.0 } else { options.shortest_edge };
+        let clear = |body: u32| shortest * body_size(scene, body);
+        let farthest = (0..scene.bodies.len() as u32).map(clear).fold(0.0, f64::max);
         let mut relief = Self {
             paths: Vec::new(),
             tips: Vec::new(),
             settings,
-            thickness,
-            bin: settings.amplitude / ROOM,
+            thickness: options.thickness,
+            shortest,
+            bin: settings.amplitude / ROOM + CLEAR * farthest,
             obstacles: BTreeMap::new(),
         };
         for outline in &frame.outlines {
             let next = outline.rest.iter().cycle().skip(1);
-            outline.rest.iter().zip(next).for_each(|(a, b)| relief.add([*a, *b], 0.0, None));
+            outline.rest.iter().zip(next).for_each(|(a, b)| relief.add([*a, *b], 0.0, clear(outline.body), None));
         }
-        for (number, (crack, offsets)) in cracks.iter().zip(offsets).enumerate() {
+        for (number, (crack, offsets)) in cracks.cracks.iter().zip(&cracks.offsets).enumerate() {
+            let clear = clear(crack.body);
             let path = Path::new(crack.rest.iter().zip(offsets).map(|(p, offset)| p + offset).collect());
             for (i, ends) in path.points.windows(2).enumerate() {
-                relief.add([ends[0], ends[1]], 0.0, Some((number, path.arcs[i])));
+                relief.add([ends[0], ends[1]], 0.0, clear, Some((number, path.arcs[i])));
                 if let Some(after) = path.points.get(i + 2) {
-                    relief.add([ends[1]; 2], bend([ends[0], ends[1], *after]), None);
+                    relief.add([ends[1]; 2], bend([ends[0], ends[1], *after]), 0.0, None);
                 }
             }
             for (end, place) in [(crack.start, path.points.first()), (crack.end, path.points.last())] {
                 if let (CrackEnd::Tip, Some(place)) = (end, place) {
-                    relief.tips.push(*place);
+                    relief.tips.push((*place, CLEAR_AT_TIP * clear));
                 }
             }
             relief.paths.push(path);
         }
-        relief
+        Some(relief)
     }
 
     /// Distance of places along a wall and in its depth, so that the relief is seen [m].
@@ -128,6 +142,11 @@ impl Relief {
     /// Most that a wall is moved [m].
     pub(crate) fn amplitude(&self) -> f64 {
         self.settings.amplitude
+    }
+
+    /// How far vertices of walls are to be from each other, as a part of the size of their body, cut `at_rest` or not.
+    pub(crate) fn room_to_others(&self, at_rest: bool) -> f64 {
+        self.shortest * if at_rest { APART_AT_REST } else { APART }
     }
 
     /// The place on a crack that is at `rest` [m]; none where there is no crack.
@@ -178,19 +197,19 @@ impl Relief {
             let along = (from - arc).max(arc - to).max(0.0);
             crack == other && along <= WINDING * distance + 1e-6 * self.bin
         };
-        let from_tip = |tip: &Point| ROOM_AT_TIP * (rest - tip).norm();
+        let from_tip = |(tip, clear): &(Point, f64)| ROOM_AT_TIP * ((rest - tip).norm() - clear).max(0.0);
         let mut room = self.tips.iter().map(from_tip).fold(self.settings.amplitude, f64::min);
         for obstacle in self.near(rest) {
             let distance = distance_to_segment(rest, obstacle.ends[0], obstacle.ends[1]);
             if !is_own(obstacle, distance) {
-                room = room.min(obstacle.room + ROOM * distance);
+                room = room.min(obstacle.room + ROOM * (distance - CLEAR * obstacle.clear).max(0.0));
             }
         }
         room
     }
 
     /// Adds an obstacle to the bins in and beside which it lies, in pieces no longer than these are wide.
-    fn add(&mut self, ends: [Point; 2], room: f64, along: Option<(usize, f64)>) {
+    fn add(&mut self, ends: [Point; 2], room: f64, clear: f64, along: Option<(usize, f64)>) {
         if room >= self.settings.amplitude {
             return;
         }
@@ -204,7 +223,7 @@ impl Relief {
             let columns = p[0].min(q[0]).saturating_sub(1)..=p[0].max(q[0]).saturating_add(1);
             for column in columns {
                 for row in p[1].min(q[1]).saturating_sub(1)..=p[1].max(q[1]).saturating_add(1) {
-                    self.obstacles.entry([column, row]).or_default().push(Obstacle { ends, room, along });
+                    self.obstacles.entry([column, row]).or_default().push(Obstacle { ends, room, clear, along });
                 }
             }
         }

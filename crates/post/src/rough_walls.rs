@@ -13,15 +13,10 @@
 use crate::boolean::Edge;
 use crate::extrude::{Extrusion, Post};
 use crate::mesh::{Mesh, Vertex};
-use crate::relief::{OnCrack, Relief};
+use crate::relief::Relief;
+use crate::rough_lines::{RoughLine, RoughWalls};
 use crate::slot::Slot;
 use crate::source::Carried;
-use fissure_scene::{Point, Vector};
-
-/// Least number of rows of quads.
-const LEAST_ROWS: usize = 4;
-/// Places this near to a corner, in parts of their distance, are left out.
-const BESIDE: f64 = 0.01;
 
 /// Vertices above each other, the back ones first.
 struct Column {
@@ -31,21 +26,12 @@ struct Column {
     within: Vec<u32>,
 }
 
-/// A place along a wall.
-#[derive(Clone, Copy)]
-struct Place {
-    now: Point,
-    carried: Carried,
-    /// Where on the crack it is, and how the material has turned, as the unit vector at that angle; none where the wall
-    /// stays.
-    moves: Option<(OnCrack, Vector)>,
-}
-
 impl Extrusion<'_> {
     /// The walls on the edges of `contour`, as [`Extrusion::walls`] makes them, those of cracks with `relief`.
     pub(crate) fn rough_walls(&self, contour: &[Edge], closed: bool, relief: &Relief, mesh: &mut Mesh) {
         let count = contour.len();
         let posts = self.posts(contour, closed, &[]);
+        let walls = RoughWalls::new(self, contour, closed, relief);
         let seam = (0..count).find(|&i| posts[i][0] != posts[(i + count - 1) % count][1]).unwrap_or(0);
         let first = mesh.vertices.len();
         let new = mesh.triangles[Slot::Inside as usize].len();
@@ -57,9 +43,9 @@ impl Extrusion<'_> {
                 let [back, front] = self.post(post, mesh);
                 let mut ends = Column { ends: [back, front], within: Vec::new() };
                 if slot == Slot::Inside
-                    && let Some(place) = self.corner(contour, closed, corner, relief)
+                    && let Some(line) = &walls.corners[corner]
                 {
-                    ends.within = self.within(&place, &post.carried, relief, mesh);
+                    ends.within = self.within(line, &post.carried, mesh);
                 }
                 ends
             };
@@ -69,9 +55,8 @@ impl Extrusion<'_> {
             };
             let b = column(&end, (i + 1) % count, mesh);
             if slot == Slot::Inside {
-                let between = self.between(contour, closed, i, relief);
-                let between: Vec<Vec<u32>> =
-                    between.iter().map(|place| self.within(place, &place.carried, relief, mesh)).collect();
+                let lines = walls.between[i].iter();
+                let between: Vec<Vec<u32>> = lines.map(|line| self.within(line, &line.carried, mesh)).collect();
                 mesh.triangles[slot as usize].extend(net(&a, &between, &b));
                 let length = (self.grid.place(contour[i].b) - self.grid.place(contour[i].a)).norm();
                 mesh.may_differ(relief.amplitude() * length * self.thickness);
@@ -84,72 +69,10 @@ impl Extrusion<'_> {
         mesh.set_normals(first, Slot::Inside, new);
     }
 
-    /// Corner `i` of a contour, as its material at the edge that begins there; none at the end of the wall.
-    fn corner(&self, contour: &[Edge], closed: bool, i: usize, relief: &Relief) -> Option<Place> {
-        let count = contour.len();
-        if i == 0 && !closed {
-            return None;
-        }
-        let (before, after) = (&contour[(i + count - 1) % count], &contour[i]);
-        let (source, next) = (self.source(before), self.source(after));
-        if source.slot != next.slot {
-            return None;
-        }
-        let longer = if length(before) > length(after) { before } else { after };
-        let carried = next.at(after.a);
-        let moves = relief.place(carried.rest).map(|place| (place, self.turn(longer)));
-        Some(Place { now: self.grid.place(after.a), carried, moves })
-    }
-
-    /// How the material at an edge has turned, as the unit vector at that angle.
-    fn turn(&self, edge: &Edge) -> Vector {
-        let along = Vector::new((edge.b.x - edge.a.x) as f64, (edge.b.y - edge.a.y) as f64).normalize();
-        let rest = self.source(edge).direction_at_rest();
-        rest.map_or_else(Vector::x, |rest| Vector::new(along.dot(&rest), rest.perp(&along)))
-    }
-
-    /// The places on edge `i` where the length along the crack is a multiple of a step, the same on both of its faces.
-    fn between(&self, contour: &[Edge], closed: bool, i: usize, relief: &Relief) -> Vec<Place> {
-        let (edge, source) = (&contour[i], self.source(&contour[i]));
-        let [from, to] = [source.at(edge.a), source.at(edge.b)];
-        let middle = nalgebra::center(&from.rest, &to.rest);
-        let Some((crack, _)) = relief.place(middle) else { return Vec::new() };
-        let arcs = [from.rest, to.rest].map(|rest| relief.place_on(crack, rest).map(|(_, arc)| arc));
-        let [Some(start), Some(end)] = arcs else { return Vec::new() };
-        let turns = [i, (i + 1) % contour.len()].map(|corner| {
-            let place = self.corner(contour, closed, corner, relief);
-            place.and_then(|place| place.moves).map_or_else(|| self.turn(edge), |(_, turn)| turn)
-        });
-        let (a, b) = (self.grid.place(edge.a), self.grid.place(edge.b));
-        let step = relief.step();
-        let first = (start.min(end) / step + BESIDE).ceil() as i64;
-        let last = (start.max(end) / step - BESIDE).floor() as i64;
-        let place = |k: i64| {
-            let part = (k as f64 * step - start) / (end - start);
-            let carried = from.between(&to, part);
-            let turn = (turns[0] + part * (turns[1] - turns[0])).normalize();
-            let moves = Some(((crack, k as f64 * step), turn));
-            Place { now: a + part * (b - a), carried, moves }
-        };
-        let mut places: Vec<Place> = (first..=last).map(place).collect();
-        if end < start {
-            places.reverse();
-        }
-        places
-    }
-
     /// Adds the vertices of a column within the wall, which have texture and velocity of `carried`.
-    fn within(&self, place: &Place, carried: &Carried, relief: &Relief, mesh: &mut Mesh) -> Vec<u32> {
-        let rows = LEAST_ROWS.max((self.thickness / relief.step()).ceil() as usize);
+    fn within(&self, line: &RoughLine, carried: &Carried, mesh: &mut Mesh) -> Vec<u32> {
         let first = mesh.vertices.len() as u32;
-        let moves = place.moves.map(|(on_crack, turn)| (relief.profile(on_crack, place.carried.rest), turn));
-        for row in 1..rows {
-            let z = self.thickness * (row as f64 / rows as f64 - 0.5);
-            let moved = moves.as_ref().map_or(Vector::zeros(), |(profile, turn)| {
-                let shift = profile.shift(z);
-                Vector::new(turn.x * shift.x - turn.y * shift.y, turn.y * shift.x + turn.x * shift.y)
-            });
-            let now = place.now + moved;
+        for &(now, z) in &line.rows {
             mesh.vertices.push(Vertex {
                 position: [now.x, now.y, z],
                 normal: [0.0; 3],
@@ -160,10 +83,6 @@ impl Extrusion<'_> {
         }
         (first..mesh.vertices.len() as u32).collect()
     }
-}
-
-fn length(edge: &Edge) -> f64 {
-    ((edge.b.x - edge.a.x) as f64).hypot((edge.b.y - edge.a.y) as f64)
 }
 
 /// The triangles between two columns and those `between` them, seen from outside from left to right.

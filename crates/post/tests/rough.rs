@@ -69,4 +69,32 @@ proptest! {
         prop_assert_eq!(meshes.len(), 3);
         prop_assert!(meshes.iter().all(|mesh| mesh.check().is_ok()));
     }
+
+    /// Truth: what the guide promises. No two vertices of a fragment with rough walls are nearer to each other than
+    /// programs may merge them by, 1e-4 of the body, or 5e-5 where it is cut at rest, however narrow its cracks are.
+    #[test]
+    fn rough_walls_may_be_merged_by_distance(
+        trunk in proptest::collection::vec(-1.5..1.5_f64, 5..13),
+        branch in proptest::collection::vec(-1.0..1.0_f64, 4..9),
+        tip in proptest::collection::vec(-0.5..0.5_f64, 3..9),
+        opening in 0.0..0.05_f64, amplitude in 0.1..0.5_f64, longer in 4.0..12.0_f64, seed: u64, at_rest: bool,
+    ) {
+        let (scene, frame) = cracked_square(&trunk, &branch, &tip, opening);
+        let roughness = Some(Roughness { amplitude, length: longer * amplitude, seed });
+        let (cut, merged) = if at_rest { (Cut::Rest, 5e-5) } else { (Cut::Opening, 1e-4) };
+        let options = PostOptions { thickness: 3.0, roughness, cut, ..options(&scene) };
+        let (low, high) = scene.bodies[0].region.bounds();
+        let merged = merged * (high - low).amax();
+        for mesh in post_frame(&scene, &frame, &options).unwrap().parts.remove(0).1 {
+            let mut places: Vec<[f64; 3]> = mesh.vertices.iter().map(|v| v.position).collect();
+            places.sort_by(|p, q| p.partial_cmp(q).unwrap());
+            places.dedup();
+            for (i, p) in places.iter().enumerate() {
+                for q in places[i + 1..].iter().take_while(|q| q[0] - p[0] < merged) {
+                    let apart = (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
+                    prop_assert!(apart > merged, "{} at {:?} {:?}", apart, p, q);
+                }
+            }
+        }
+    }
 }
