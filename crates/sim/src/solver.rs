@@ -58,6 +58,11 @@ pub(crate) trait Solver: Snapshot + Observed + std::fmt::Debug + Send {
     /// Sets all velocities to zero.
     fn stop(&mut self);
 
+    /// Sets all velocities to zero now: those that the next step begins with are of half a step before.
+    fn stop_now(&mut self) {
+        self.stop();
+    }
+
     /// Lets velocities decay as exp(−rate t) from now on [1/s].
     fn set_damping(&mut self, rate: f64);
 }

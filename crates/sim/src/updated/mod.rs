@@ -87,6 +87,9 @@ pub(crate) struct Updated {
     colliders: Colliders,
     /// Rate at which velocities decay [1/s].
     damping: f64,
+    /// Whether the velocities of particles belong to this moment, as after [`Solver::stop_now`], not to half a step
+    /// before it.
+    starts_now: bool,
     // The state that cannot be laid anew from the scene and the cracks.
     points: Points,
     faces: Faces,
@@ -170,6 +173,7 @@ impl Updated {
             supports: Supports::new(&setup)?,
             colliders: Colliders::of(&setup.scene),
             damping: setup.scene.solver.damping,
+            starts_now: false,
             points,
             faces,
             external_work,
@@ -205,7 +209,8 @@ impl Updated {
         ToGrid { setup, points, lattice }.send(nodes);
         loads.add_forces(points, faces, lattice, setup, middle, nodes);
         relieve_light_fields(setup, points, lattice, nodes);
-        nodes.update_velocities(setup.scene.gravity, self.damping, time_step);
+        let kick = if std::mem::take(&mut self.starts_now) { 0.5 * time_step } else { time_step };
+        nodes.update_velocities(setup.scene.gravity, self.damping, kick);
         if setup.scene.solver.transfer == Transfer::Xpic {
             nodes.smoothed =
                 smoothed_velocities(&ToGrid { setup, points, lattice }, &FromGrid { setup, lattice, nodes });
@@ -350,6 +355,12 @@ impl Solver for Updated {
 
     fn stop(&mut self) {
         self.points.stop();
+        self.starts_now = false;
+    }
+
+    fn stop_now(&mut self) {
+        self.points.stop();
+        self.starts_now = true;
     }
 
     fn set_damping(&mut self, rate: f64) {
