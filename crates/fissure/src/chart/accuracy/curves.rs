@@ -26,6 +26,8 @@ pub(super) enum Family {
 
 /// The default, as `standard` has it for brittle bodies.
 pub(super) const DEFAULT: &str = "total bilinear";
+/// The domain of each particle lies in one cell there, and GIMP is the bilinear kernel.
+pub(super) const SAME_AS_DEFAULT: &str = "total GIMP";
 pub(super) const THESIS: &str = "thesis";
 pub(super) const CONTOUR: &str = "total contour";
 pub(super) const BARE_CONTOUR: &str = "total contour without area term";

@@ -2,27 +2,10 @@
 
 use super::super::Charting;
 use super::super::table::{Table, number};
-use super::curves::{BARE_CONTOUR, CONTOUR, Curve, DEFAULT, Family, KERNELS, THESIS, curves};
+use super::curves::{BARE_CONTOUR, CONTOUR, Curve, DEFAULT, Family, KERNELS, SAME_AS_DEFAULT, THESIS, curves};
+use super::front::{Point, front, lead};
 use fissure_chart::{Axis, Figure, Line, Panel, Plot};
 use fissure_verify::{Measure, STUDIES, Study};
-
-/// Errors above this are not drawn: they are no solutions [–].
-const MOST_ERROR: f64 = 3.0;
-
-/// One measured point of a curve.
-#[derive(Debug, Clone, Copy)]
-struct Point {
-    cells: f64,
-    seconds: f64,
-    worst: f64,
-}
-
-impl Point {
-    /// Whether it has a place in a figure, and is a solution at all.
-    fn is_shown(&self) -> bool {
-        self.worst > 0.0 && self.worst <= MOST_ERROR && self.seconds > 0.0
-    }
-}
 
 /// The points of a curve, also those where it failed at some place.
 fn measured(table: &Table<'_>, study: &Study, curve: &str, measure: Measure) -> Vec<Point> {
@@ -35,31 +18,6 @@ fn measured(table: &Table<'_>, study: &Study, curve: &str, measure: Measure) -> 
 /// The points of a curve that are shown.
 fn points(table: &Table<'_>, study: &Study, curve: &str, measure: Measure) -> Vec<Point> {
     measured(table, study, curve, measure).into_iter().filter(Point::is_shown).collect()
-}
-
-/// The points of a curve, from coarse to fine, with the largest error that it has in so many cells and in more.
-///
-/// An error that grows with the number of cells is small by chance where it is small: it passes through zero, or two
-/// errors cancel. Nobody can count on it, and it must not be what others are held against.
-fn held(points: &[Point]) -> Vec<Point> {
-    let mut held = points.to_vec();
-    for k in (1..held.len()).rev() {
-        held[k - 1].worst = held[k - 1].worst.max(held[k].worst);
-    }
-    held
-}
-
-/// What nothing measured is both faster and more accurate than, from fast to accurate.
-fn front(mut all: Vec<Point>) -> Vec<(f64, f64)> {
-    all.retain(Point::is_shown);
-    all.sort_by(|a, b| a.seconds.total_cmp(&b.seconds).then(a.worst.total_cmp(&b.worst)));
-    let mut front: Vec<(f64, f64)> = Vec::new();
-    for point in all {
-        if front.last().is_none_or(|last| point.worst < last.1) {
-            front.push((point.seconds, point.worst));
-        }
-    }
-    front
 }
 
 /// The broad line of a front.
@@ -76,7 +34,49 @@ fn line(curve: &Curve, name: String, study: &Study, points: &[Point]) -> Line {
 /// The front of a study over all curves that differ in more than how tips are measured.
 fn front_of(table: &Table<'_>, study: &Study) -> Vec<(f64, f64)> {
     let all = curves().into_iter().filter(|curve| curve.family != Family::Measure);
-    front(all.flat_map(|curve| held(&measured(table, study, &curve.name, main_measure(study)))).collect())
+    front(&all.map(|curve| measured(table, study, &curve.name, main_measure(study))).collect::<Vec<_>>())
+}
+
+/// How many times as long as the default the fastest other way takes to an error of the default, at the error where
+/// that is least; none where no other comes to any. Without what is the default under another name.
+fn lead_of_default(table: &Table<'_>, study: &Study) -> Option<f64> {
+    let of = |curve: &str| measured(table, study, curve, main_measure(study));
+    let others = curves().into_iter().filter(|curve| curve.family != Family::Measure);
+    let others = others.filter(|curve| ![DEFAULT, SAME_AS_DEFAULT].contains(&curve.name.as_str()));
+    lead(&of(DEFAULT), &others.map(|curve| of(&curve.name)).collect::<Vec<_>>())
+}
+
+/// By how much times of the same computation differ at most [–]: those of the default and of what is the same.
+fn scatter_of_time(table: &Table<'_>) -> f64 {
+    let differences = STUDIES.iter().flat_map(|study| {
+        let of = |curve: &str| measured(table, study, curve, main_measure(study));
+        let (ours, same) = (of(DEFAULT), of(SAME_AS_DEFAULT));
+        let pairs = ours.into_iter().filter_map(move |a| {
+            let b = same.iter().find(|b| b.cells == a.cells)?;
+            Some((a.seconds / b.seconds).ln().abs().exp_m1())
+        });
+        pairs.collect::<Vec<_>>()
+    });
+    differences.fold(0.0, f64::max)
+}
+
+/// What the table says of the default beside all others.
+fn beside_others(table: &Table<'_>) -> String {
+    let leads = STUDIES.iter().filter_map(|study| {
+        let lead = lead_of_default(table, study)?;
+        Some(format!("{} {}", study.name, two_digits(lead)))
+    });
+    format!(
+        "The fastest other way to an error of the default takes, at that of its errors where this is least, so many times as long: {}. \
+         The same computation, measured twice ({DEFAULT}, {SAME_AS_DEFAULT}), differs in time by up to {:.0} %.",
+        leads.collect::<Vec<_>>().join(", "),
+        100.0 * scatter_of_time(table)
+    )
+}
+
+/// A number above zero with two digits.
+fn two_digits(value: f64) -> String {
+    if value < 9.95 { format!("{value:.1}") } else { format!("{value:.0}") }
 }
 
 /// K or the way of the crack, whatever a study has.
@@ -111,11 +111,12 @@ pub(super) fn schemes(charting: &Charting<'_>, table: &Table<'_>) -> Figure {
             format!(
                 "Points of a curve are resolutions, from few cells on the left to many on the right ({}). The broad line is the front: \
                  nothing measured is both faster and more accurate, other transfers included, where a point counts with the largest error \
-                 of its curve in so many cells and in more. Ringed: the default at the resolution that \
+                 of its curve in so many cells and in more, and curves go on between their points as they are drawn. Ringed: the default at the resolution that \
                  is advised. The worst of several places, turns and spacings on the grid counts; errors above 300 % are not shown. \
                  Dashes tell kernels.",
                 STUDIES.map(|study| format!("{}: {} {}", study.name, list(study.cells), study.along)).join("; ")
             ),
+            beside_others(table),
             charting.origin.to_string(),
         ],
         columns: 2,
@@ -209,7 +210,7 @@ pub(super) fn measures(charting: &Charting<'_>, table: &Table<'_>) -> Figure {
                 ..Line::default()
             })
             .collect();
-        lines.push(broad(front(found.iter().flat_map(|points| held(points)).collect())));
+        lines.push(broad(front(&found)));
         Panel { title: study.about.into(), plot: Plot::Lines { x: seconds(), y: error(), lines } }
     });
     Figure {
@@ -227,26 +228,4 @@ pub(super) fn measures(charting: &Charting<'_>, table: &Table<'_>) -> Figure {
 
 fn list(cells: &[f64]) -> String {
     cells.iter().map(f64::to_string).collect::<Vec<_>>().join(" ")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Truth: by hand. An error that passes through zero counts with what it comes to beyond.
-    #[test]
-    fn a_curve_counts_with_what_it_holds() {
-        let errors = [0.3, 0.01, 0.05, 0.02, 0.02];
-        let curve = errors.map(|worst| Point { cells: 8.0, seconds: 1.0, worst });
-        assert_eq!(held(&curve).iter().map(|p| p.worst).collect::<Vec<_>>(), [0.3, 0.05, 0.05, 0.02, 0.02]);
-        assert!(held(&[]).is_empty());
-    }
-
-    /// Truth: by hand; the third point is slower and worse than the second.
-    #[test]
-    fn nothing_on_the_front_is_beaten() {
-        let point = |seconds, worst| Point { cells: 8.0, seconds, worst };
-        let all = vec![point(4.0, 0.05), point(1.0, 0.1), point(2.0, 0.02), point(8.0, 0.01), point(2.0, 0.03)];
-        assert_eq!(front(all), [(1.0, 0.1), (2.0, 0.02), (8.0, 0.01)]);
-    }
 }

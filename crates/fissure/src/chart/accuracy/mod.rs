@@ -2,6 +2,7 @@
 
 mod curves;
 mod figures;
+mod front;
 
 use super::Charting;
 use super::table::{Table, number};
