@@ -79,17 +79,27 @@ pub struct SolverKeys {
     pub mode_split: Option<ModeSplit>,
 }
 
+/// What dry solids rub with: rock .6 to .85 (Byerlee 1978, Pure Appl. Geophys. 116, 615), glass and polymers about .4 to
+/// .9. Without any, what has fallen on something slides off it in the end.
+const FRICTION_OF_DRY_SOLIDS: f64 = 0.5;
+
 /// What bodies and fragments do to each other where they touch (total formulation; in the updated one the grid keeps
 /// them apart, without friction).
-#[derive(Debug, Clone, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ContactKeys {
-    /// Coulomb friction between surfaces; `inf`: they stick. Default: 0. Between the two faces of one crack it is
+    /// Coulomb friction between surfaces; `inf`: they stick. Default: 0.5. Between the two faces of one crack it is
     /// `solver.crack_friction`, against a collider that collider's.
     #[schemars(transform = FRICTION.bounds())]
     pub friction: f64,
     /// Pairs of materials with a friction of their own.
     pub pairs: Vec<PairFrictionKeys>,
+}
+
+impl Default for ContactKeys {
+    fn default() -> Self {
+        Self { friction: FRICTION_OF_DRY_SOLIDS, pairs: Vec::new() }
+    }
 }
 
 /// Friction between two materials.
