@@ -22,6 +22,7 @@ use crate::outline::outline_edges;
 use crate::overlaps::{Enclosed, share_out_overlaps};
 use crate::pieces::numbers;
 use crate::pinch::part_pinches;
+use crate::pressed_corners::part_caps;
 use crate::relief::Relief;
 use crate::rest_bevel::RestBevel;
 use crate::rest_cut::{RestDivision, rest_cap};
@@ -449,6 +450,7 @@ impl<'a> Solids<'a> {
         if caps.is_empty() {
             return None;
         }
+        part_caps(&mut caps, &mut sources, division.apart / grid.step);
         caps.retain(|(cap, _)| area(&cap.shape, grid) >= self.options.smallest_fragment);
         let extrusion = self.extrusion(body, &sources);
         let bevels_at_rest = self.bevels_at_rest(&extrusion, &caps, grids[1]);

@@ -10,7 +10,7 @@
 //!    `smooth`: paths of cracks without their zigzag. `rest_cut`: triangles at rest that the material carries, in place
 //!    of steps 3 to 7, `carrying`; `sight`: on which side of cracks, `drawn_along`: with faces that are shown
 //!    elsewhere, `untangled`: without folds; `rest_room`: no corners beside each other, `rest_needles`: no needles at
-//!    rest, `parted_corners`: those in one place at rest kept apart.
+//!    rest, `parted_corners`, `pressed_corners`: those in one place, at rest or now, kept apart.
 //!    `crumbs`: fragments of a few particles move as these do. `closed`: cracks within a fragment are closed where they
 //!    are hardly open.
 //! 3. `boolean`: a fragment is where its own edges wind around a place at least once. An open crack in it takes one
@@ -80,6 +80,7 @@ mod particles;
 mod pieces;
 mod pinch;
 mod post;
+mod pressed_corners;
 mod provenance;
 #[cfg(feature = "files")]
 mod record;

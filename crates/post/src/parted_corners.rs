@@ -13,7 +13,7 @@ use fissure_scene::{Point, Vector};
 use rustc_hash::FxHashMap;
 
 /// Corners that are pushed apart across their faces go so much farther, as a part of the width: more than rounding.
-const MORE: f64 = 0.02;
+pub(crate) const MORE: f64 = 0.02;
 /// Times that corners where cracks meet are moved farther.
 const ROUNDS: usize = 6;
 /// By how much farther.
@@ -71,13 +71,13 @@ fn part(shown: &mut [GridPoint], group: &[usize], width: f64, inwards: &Inwards)
 }
 
 /// The ways from corners into the material.
-struct Inwards {
+pub(crate) struct Inwards {
     /// Of the edge that ends at each corner, and of that which begins there: to its left, of unit length.
     left: Vec<[Vector; 2]>,
 }
 
 impl Inwards {
-    fn new(shown: &[GridPoint], lengths: &[usize]) -> Self {
+    pub(crate) fn new(shown: &[GridPoint], lengths: &[usize]) -> Self {
         let mut left = Vec::with_capacity(shown.len());
         let mut begin = 0;
         for &length in lengths {
@@ -92,7 +92,7 @@ impl Inwards {
     }
 
     /// Into the wedge at a corner, of unit length.
-    fn of(&self, corner: usize) -> Vector {
+    pub(crate) fn of(&self, corner: usize) -> Vector {
         let [before, after] = self.left[corner];
         (before + after).try_normalize(1e-3).unwrap_or(after)
     }

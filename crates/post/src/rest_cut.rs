@@ -8,6 +8,7 @@ use crate::boolean::{Edge, Shape, SourceIndex};
 use crate::carrying::{CarriedCorners, Carrying};
 use crate::interior::Interior;
 use crate::parted_corners::part_corners;
+use crate::pressed_corners::part_pressed;
 use crate::rest_room::{is_crowded, with_room};
 use crate::snap::{Grid, GridPoint};
 use crate::source::{Carried, SourceEdge};
@@ -104,6 +105,7 @@ pub(crate) fn rest_cap(
     let mut shown: Vec<GridPoint> = shape.iter().flatten().map(|edge| edge.a).collect();
     let lengths: Vec<usize> = shape.iter().map(Vec::len).collect();
     part_corners(&mut shown, &places[..count], &lengths, division.apart / grid.step, rest_grid);
+    part_pressed(&mut shown, &lengths, division.apart / grid.step);
     let speeds: Vec<Vector> = told.iter().map(|[start, _]| start.velocity).collect();
     let carrying = Carrying { interior, grid, piece, places: &places, triangles: &found };
     let CarriedCorners { now, velocities } = carrying.corners(&shown, &speeds, division.unfolds);
