@@ -22,6 +22,7 @@ pub const CASES: &[Case] = &[
     cases::branching_plate::CASE,
     cases::mirrored_branching::CASE,
     cases::pull_price::CASE,
+    cases::turned_notch::CASE,
     cases::kink_angles::CASE,
     cases::shear_notch::CASE,
     cases::wing_cracks::CASE,

@@ -32,6 +32,7 @@ pub(crate) mod strip;
 pub(crate) mod thick_ring;
 pub(crate) mod three_holes;
 pub(crate) mod transfers;
+pub(crate) mod turned_notch;
 pub(crate) mod two_discs;
 pub(crate) mod wedge;
 pub(crate) mod wing_cracks;
