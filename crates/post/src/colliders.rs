@@ -56,17 +56,7 @@ fn collider_mesh(
         });
     }
     let shapes = material(&sources);
-    let extrusion = Extrusion {
-        grid,
-        sources: &sources,
-        thickness: options.thickness,
-        crease_angle: options.crease_angle,
-        texture_origin: low,
-        texture_size: (high - low).amax(),
-        at_rest: false,
-        relief: None,
-        bevel: None,
-    };
+    let extrusion = Extrusion::plain(grid, &sources, options, (low, high));
     let area = 0.5 * shapes.iter().flatten().map(|c| twice_area(c)).sum::<i128>() as f64 * grid.step * grid.step;
     let content = Content::Solid { area, thickness: options.thickness, slack: 0.0 };
     let mut mesh = Mesh::new(object_name(&collider.name, "collider", index), index, content);

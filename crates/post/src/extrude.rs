@@ -4,6 +4,7 @@ use crate::bevel::{BevelCorner, BevelSize};
 use crate::boolean::Edge;
 use crate::history::History;
 use crate::mesh::{Mesh, Vertex};
+use crate::options::PostOptions;
 use crate::relief::Relief;
 use crate::slot::Slot;
 use crate::snap::{Grid, GridPoint};
@@ -38,7 +39,28 @@ pub(crate) struct Extrusion<'a> {
     pub(crate) bevel: Option<BevelSize>,
 }
 
-impl Extrusion<'_> {
+impl<'a> Extrusion<'a> {
+    /// That of a polygon on a `grid`, with edges of `sources`, in a body or collider within a box [m]: with walls that
+    /// are smooth and edges that are sharp.
+    pub(crate) fn plain(
+        grid: Grid,
+        sources: &'a [SourceEdge],
+        options: &PostOptions,
+        (low, high): (Point, Point),
+    ) -> Self {
+        Self {
+            grid,
+            sources,
+            thickness: options.thickness,
+            crease_angle: options.crease_angle,
+            texture_origin: low,
+            texture_size: (high - low).amax(),
+            at_rest: false,
+            relief: None,
+            bevel: None,
+        }
+    }
+
     /// Adds the caps and walls of a polygon to `mesh`. `bevel`: where its corners on the boundary go;
     /// `within`: what its corners within carry, in their order.
     pub(crate) fn solid(&self, cap: &Cap, bevel: &[BevelCorner], within: &[Carried], mesh: &mut Mesh) {

@@ -39,21 +39,10 @@ fn face_mesh(
     histories: &[History],
 ) -> Mesh {
     let body = &scene.bodies[crack.body as usize];
-    let (low, high) = body.region.bounds();
     let grid = Grid::covering(crack.above.iter().chain(&crack.below), 0.0);
     let first = scene.cracks.get(crack.crack as usize).and_then(|c| c.points.first().copied());
     let sources = opening_edges(crack, first, histories, grid);
-    let extrusion = Extrusion {
-        grid,
-        sources: &sources,
-        thickness: options.thickness,
-        crease_angle: options.crease_angle,
-        texture_origin: low,
-        texture_size: (high - low).amax(),
-        at_rest: false,
-        relief,
-        bevel: None,
-    };
+    let extrusion = Extrusion { relief, ..Extrusion::plain(grid, &sources, options, body.region.bounds()) };
     let name = object_name(&body_names(scene)[crack.body as usize], "crack", crack.crack);
     let mut mesh = Mesh::new(name, crack.crack, Content::Surface);
     mesh.texture_size = options.uv_in_metres.then_some(extrusion.texture_size);

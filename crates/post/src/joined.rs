@@ -108,26 +108,7 @@ fn without(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::slot::Slot;
-    use crate::snap::GridPoint;
-    use fissure_scene::{Point, Vector};
-
-    /// A boundary at rest through some corners, drawn where its edges lie on y = 0.
-    fn boundary(corners: &[(f64, f64)]) -> Vec<SourceEdge> {
-        let carried = |&(x, y): &(f64, f64)| Carried::within(Point::new(x, y), Vector::zeros());
-        let point = |&(x, y): &(f64, f64)| GridPoint::new((1e6 * x) as i64, (1e6 * y) as i64);
-        let pairs = corners.iter().zip(corners.iter().cycle().skip(1));
-        let edge =
-            |(a, b)| SourceEdge { a: point(a), b: point(b), carried: [carried(a), carried(b)], slot: Slot::Inside };
-        pairs.map(edge).collect()
-    }
-
-    fn corners(boundary: &[SourceEdge]) -> Vec<(f64, f64)> {
-        for (edge, next) in boundary.iter().zip(boundary.iter().cycle().skip(1)) {
-            assert_eq!((edge.b, edge.carried[1].rest), (next.a, next.carried[0].rest));
-        }
-        boundary.iter().map(|edge| (edge.carried[0].rest.x, edge.carried[0].rest.y)).collect()
-    }
+    use crate::rest_boundary::{boundary, corners};
 
     /// Truth: by hand. A slit with short edges in its middle and at its tip, beside a drawn short edge: both faces lose
     /// the corners in the middle, the tip and what was drawn stay.

@@ -22,9 +22,10 @@
 //! 6. `short_edges`, `needles`: edges that readers which merge by distance would close are taken out, and corners that
 //!    are so sharp that these would close them end bluntly.
 //!    `narrows`: necks and channels narrower than that are cut and closed: triangles in them would have shorter edges.
+//!    `tidied` has these in their order.
 //! 7. `overlaps`: fragments that lie in each other a little share the middle; then steps 4 to 6 once more.
 //! 8. `triangulate`, `interior`, `extrude`: caps of triangles without small angles, and walls, with normals, texture
-//!    coordinates, velocities and material slots.
+//!    coordinates, velocities and material slots. `solids`, `rest_solids`: all steps from 3 on, for both cuts.
 //!    `relief`, `rough_lines`, `rough_walls`: walls of cracks that are not plane, `bevel`: edges that are not sharp,
 //!    where asked for.
 //! 9. [`Mesh::check`]: closed, manifold, oriented, volume = area × thickness, in the precision of the file.
@@ -86,9 +87,12 @@ mod provenance;
 mod record;
 mod relief;
 mod rest_bevel;
+#[cfg(test)]
+mod rest_boundary;
 mod rest_cut;
 mod rest_needles;
 mod rest_room;
+mod rest_solids;
 mod rigid;
 mod rough_lines;
 mod rough_walls;
@@ -100,9 +104,12 @@ mod slivers;
 mod slot;
 mod smooth;
 mod snap;
+mod solids;
 mod source;
 mod thinned;
+mod tidied;
 mod triangulate;
+mod two_sides;
 mod untangled;
 mod widening;
 #[cfg(feature = "files")]

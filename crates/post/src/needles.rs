@@ -12,6 +12,7 @@ use crate::slot::Slot;
 use crate::snap::{GridPoint, turn};
 use crate::source::SourceEdge;
 use crate::triangulate::inwards;
+use crate::two_sides::TwoSides;
 use spade::Point2;
 
 /// Corners below this angle are sharp [degrees]: new corners in the middle of the shortest edges beside them would be
@@ -77,40 +78,35 @@ fn needle(contour: &Contour, corner: usize, least: f64, growth: Growth, sources:
     };
     let most = MOST_EDGES.min((count - 1) / 2);
     // As far along one side as along the other, from corner to corner of both.
-    let (mut k, mut begun) = ([0, 0], [0.0, 0.0]);
-    let mut reached = 0.0;
+    let mut along = TwoSides::default();
     let mut places = [one.b; 2].map(|p| (p.x as f64, p.y as f64));
     loop {
+        let k = along.edges;
         let sides = [edge(k[0], true), edge(k[1], false)];
         let lengths = sides.map(|(a, b)| length(a, b));
-        let to = (begun[0] + lengths[0]).min(begun[1] + lengths[1]);
+        let to = along.next(lengths);
         let at = |s: usize, arc: f64| {
             let (a, b) = sides[s];
-            let (part, along) = ((arc - begun[s]) / lengths[s], way(a, b));
-            (a.x as f64 + part * along.0, a.y as f64 + part * along.1)
+            let (part, way) = (along.part(s, arc, lengths), way(a, b));
+            (a.x as f64 + part * way.0, a.y as f64 + part * way.1)
         };
         let ahead = [at(0, to), at(1, to)];
         let width = |p: [(f64, f64); 2]| (p[1].0 - p[0].0, p[1].1 - p[0].1);
         let (from, end) = (width(places), width(ahead));
         if end.0.hypot(end.1) >= least {
             let part = part_with_length(from, end, least);
-            let arc = reached + part * (to - reached);
+            let arc = along.reached + part * (to - along.reached);
             let ends = [at(0, arc), at(1, arc)].map(|(x, y)| Point2::new(x, y));
             let (before, after) = ((corner + count - k[0]) % count, (next + k[1]) % count);
             let ends = [inwards(&contour[before], ends[0]), inwards(&contour[after], ends[1])];
             let needle = Needle { before, after, ends };
             return (ends[0] != ends[1] && needle.shortens(contour)).then_some(needle);
         }
-        for s in 0..2 {
-            if begun[s] + lengths[s] <= to {
-                begun[s] += lengths[s];
-                k[s] += 1;
-            }
-        }
-        if k[0] + k[1] >= 2 * most {
+        along.go_on(to, lengths);
+        if along.edges[0] + along.edges[1] >= 2 * most {
             return None;
         }
-        (reached, places) = (to, ahead);
+        places = ahead;
     }
 }
 

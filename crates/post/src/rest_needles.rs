@@ -6,6 +6,7 @@ use crate::boolean::{Edge, SourceIndex};
 use crate::rest_cut::between;
 use crate::slot::Slot;
 use crate::source::{Carried, SourceEdge};
+use crate::two_sides::TwoSides;
 use fissure_scene::{Point, Vector};
 
 /// Cosine of the angle below which a corner is sharp: 60 degrees.
@@ -79,26 +80,27 @@ fn needle(boundary: &[SourceEdge], corner: usize, end: usize, least: f64) -> Opt
     }
     let most = MOST_EDGES.min((count - end - 2) / 2);
     // As far along one side as along the other, from corner to corner of both.
-    let (mut k, mut begun, mut reached) = ([0, 0], [0.0, 0.0], 0.0);
+    let mut along = TwoSides::default();
     let mut before: [Point; 2] = [back.0, forth.0];
     loop {
+        let k = along.edges;
         let sides = [side(k[0], true), side(k[1], false)];
         let lengths = sides.map(|(a, b)| (b - a).norm());
         let turns = |s: usize, way: Vector| {
-            let along = sides[s].1 - sides[s].0;
-            along.dot(&way) <= STRAIGHT * lengths[s] * way.norm()
+            let edge = sides[s].1 - sides[s].0;
+            edge.dot(&way) <= STRAIGHT * lengths[s] * way.norm()
         };
         if let Some(s) = (0..2).find(|&s| turns(s, [one, two][s])) {
             // The tip of a crack beside another line: the other side goes on from there.
             let (tip, other) = (k[s].checked_sub(1)?, 1 - s);
-            let part = (reached - begun[other]) / lengths[other];
+            let part = along.part(other, along.reached, lengths);
             let is_whole = (1.0 - part) * lengths[other] < least;
             let mut ends = [End { edges: tip, part: 1.0 }; 2];
             ends[other] = End { edges: k[other], part: if is_whole { 1.0 } else { part } };
             return Some(Needle { corner, end, back: ends[0], forth: ends[1], joins: (!is_whole).then_some(other) });
         }
-        let to = (begun[0] + lengths[0]).min(begun[1] + lengths[1]);
-        let at = |s: usize| sides[s].0 + (to - begun[s]) / lengths[s] * (sides[s].1 - sides[s].0);
+        let to = along.next(lengths);
+        let at = |s: usize| sides[s].0 + along.part(s, to, lengths) * (sides[s].1 - sides[s].0);
         let ahead = [at(0), at(1)];
         let width = (ahead[1] - ahead[0]).norm();
         if width >= least {
@@ -107,25 +109,20 @@ fn needle(boundary: &[SourceEdge], corner: usize, end: usize, least: f64) -> Opt
                 return None;
             }
             let narrow = (before[1] - before[0]).norm();
-            let arc = reached + (least - narrow) / (width - narrow) * (to - reached);
+            let arc = along.reached + (least - narrow) / (width - narrow) * (to - along.reached);
             let side_end = |s: usize| {
-                let part = (arc - begun[s]) / lengths[s];
+                let part = along.part(s, arc, lengths);
                 // What would be left of the edge is too short.
                 let is_whole = (1.0 - part) * lengths[s] < least;
                 End { edges: k[s], part: if is_whole { 1.0 } else { part } }
             };
             return Some(Needle { corner, end, back: side_end(0), forth: side_end(1), joins: None });
         }
-        for s in 0..2 {
-            if begun[s] + lengths[s] <= to {
-                begun[s] += lengths[s];
-                k[s] += 1;
-            }
-        }
-        if k[0] + k[1] >= 2 * most {
+        along.go_on(to, lengths);
+        if along.edges[0] + along.edges[1] >= 2 * most {
             return None;
         }
-        (reached, before) = (to, ahead);
+        before = ahead;
     }
 }
 
@@ -214,25 +211,8 @@ fn contains(ring: &[Point], place: Point) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::snap::GridPoint;
+    use crate::rest_boundary::{boundary, corners};
     use proptest::prelude::*;
-
-    /// A boundary through some corners that has not moved.
-    fn boundary(corners: &[(f64, f64)]) -> Vec<SourceEdge> {
-        let carried = |&(x, y): &(f64, f64)| Carried::within(Point::new(x, y), Vector::zeros());
-        let point = |&(x, y): &(f64, f64)| GridPoint::new((1e6 * x).round() as i64, (1e6 * y).round() as i64);
-        let pairs = corners.iter().zip(corners.iter().cycle().skip(1));
-        let edge =
-            |(a, b)| SourceEdge { a: point(a), b: point(b), carried: [carried(a), carried(b)], slot: Slot::Inside };
-        pairs.map(edge).collect()
-    }
-
-    fn corners(boundary: &[SourceEdge]) -> Vec<(f64, f64)> {
-        for (edge, next) in boundary.iter().zip(boundary.iter().cycle().skip(1)) {
-            assert_eq!((edge.b, edge.carried[1].rest), (next.a, next.carried[0].rest));
-        }
-        boundary.iter().map(|edge| (edge.carried[0].rest.x, edge.carried[0].rest.y)).collect()
-    }
 
     fn area(corners: &[(f64, f64)]) -> f64 {
         let next = corners.iter().cycle().skip(1);
