@@ -79,8 +79,8 @@ pub struct SolverKeys {
     pub mode_split: Option<ModeSplit>,
 }
 
-/// What dry solids rub with: rock .6 to .85 (Byerlee 1978, Pure Appl. Geophys. 116, 615), glass and polymers about .4
-/// to .9. Without any, what has fallen on something slides off it in the end.
+/// A little less than rock rubs with, .6 to .85 (Byerlee 1978, Pure Appl. Geophys. 116, 615). Without any, what has
+/// fallen on something slides off it in the end.
 const FRICTION_OF_DRY_SOLIDS: f64 = 0.5;
 
 /// What bodies and fragments do to each other where they touch (total formulation; in the updated one the grid keeps
