@@ -113,17 +113,14 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
         let members = groups(&rest_ways, objects.iter().map(at_rest).collect(), &rest_grids, largest);
         together(shown_ways, &members)
     };
-    let mut meshes = BTreeMap::new();
     let mut opened = Boundaries::new();
-    for ((body, piece), fragments) in objects {
-        if options.cut == Cut::Rest
-            && let Some(mesh) = solids.at_rest(body, piece, &fragments)
-        {
-            meshes.extend(mesh.map(|mesh| ((body, piece), mesh)));
-            continue;
-        }
-        opened.insert((body, piece), fragments.into_iter().flatten().flatten().collect());
-    }
+    let mut meshes = if options.cut == Cut::Rest {
+        solids.at_rest(objects, &mut opened)
+    } else {
+        let whole = |fragments: Vec<Vec<Vec<SourceEdge>>>| fragments.into_iter().flatten().flatten().collect();
+        opened.extend(objects.into_iter().map(|(object, fragments)| (object, whole(fragments))));
+        BTreeMap::new()
+    };
     meshes.extend(solids.opened(&opened)?);
     // What has been checked stays as it is: the grid reaches so far.
     let apart = |(object, mesh): (ObjectKey, Mesh)| {

@@ -23,7 +23,8 @@
 //!    are so sharp that these would close them end bluntly.
 //!    `narrows`: necks and channels narrower than that are cut and closed: triangles in them would have shorter edges.
 //!    `tidied` has these in their order.
-//! 7. `overlaps`: fragments that lie in each other a little share the middle; then steps 4 to 6 once more.
+//! 7. `overlaps`, `lattice`: fragments that lie in each other a little share the middle; then steps 4 to 6 once more.
+//!    `ways_apart`, `rest_apart`: the same for triangles that stay, by moving their corners.
 //! 8. `triangulate`, `interior`, `extrude`: caps of triangles without small angles, and walls, with normals, texture
 //!    coordinates, velocities and material slots. `solids`, `rest_solids`: all steps from 3 on, for both cuts.
 //!    `relief`, `rough_lines`, `rough_walls`: walls of cracks that are not plane, `bevel`: edges that are not sharp,
@@ -66,6 +67,7 @@ mod held_open;
 mod history;
 mod interior;
 mod joined;
+mod lattice;
 #[cfg(feature = "files")]
 mod manifest;
 mod mesh;
@@ -86,6 +88,7 @@ mod provenance;
 #[cfg(feature = "files")]
 mod record;
 mod relief;
+mod rest_apart;
 mod rest_bevel;
 #[cfg(test)]
 mod rest_boundary;
@@ -111,6 +114,7 @@ mod tidied;
 mod triangulate;
 mod two_sides;
 mod untangled;
+mod ways_apart;
 mod widening;
 #[cfg(feature = "files")]
 mod write;

@@ -14,11 +14,12 @@ use crate::rest_needles::blunt_at_rest;
 use crate::slivers::is_sliver;
 use crate::slot::Slot;
 use crate::snap::Grid;
-use crate::solids::{SolidCap, Solids, area};
+use crate::solids::{Boundaries, ObjectKey, SolidCap, Solids, area};
 use crate::source::{Carried, SourceEdge};
 use crate::triangulate::Cap;
 use fissure_scene::{Cut, Point, Vector};
 use rustc_hash::FxHashSet;
+use std::collections::BTreeMap;
 
 /// How far faces of closed cracks are apart that are cut at rest, in shortest edges: a little more than a quarter, so
 /// that programs may merge vertices within 5e-5 of the body, and a crack takes next to nothing of its area.
@@ -32,27 +33,65 @@ pub(crate) fn apart(options: &PostOptions, size: f64) -> f64 {
     if options.cut == Cut::Rest { apart * options.shortest_edge * size } else { 0.0 }
 }
 
+/// An object cut at rest, before it is extruded.
+pub(crate) struct RestObject {
+    pub(crate) body: u32,
+    pub(crate) piece: u32,
+    /// Its parts, with what their corners within carry.
+    pub(crate) caps: Vec<(Cap, Vec<Carried>)>,
+    /// Where the edges of all parts come from, in their order.
+    pub(crate) sources: Vec<SourceEdge>,
+    division: RestDivision,
+}
+
 impl Solids<'_> {
-    /// Extrudes the triangles of `fragments` at rest, moved with the material. None where that is no solid: where the
-    /// material has folded over so that one corner lies on another. Nothing in it where it is smaller than asked for.
-    pub(crate) fn at_rest(&self, body: u32, piece: u32, fragments: &[Vec<Vec<SourceEdge>>]) -> Option<Option<Mesh>> {
+    /// Extrudes the triangles of fragments at rest, moved with the material, beside each other. What is no solid then,
+    /// where the material has folded over so that one corner lies on another, goes to `opened`.
+    pub(crate) fn at_rest(
+        &self,
+        objects: BTreeMap<ObjectKey, Vec<Vec<Vec<SourceEdge>>>>,
+        opened: &mut Boundaries,
+    ) -> BTreeMap<ObjectKey, Mesh> {
+        let mut cut = Vec::with_capacity(objects.len());
+        for (&object, fragments) in &objects {
+            let mut divisions = self.divisions(object.0).into_iter();
+            match divisions.find_map(|division| self.cut_at_rest(object, fragments, division)) {
+                Some(found) => cut.push(found),
+                None => drop(opened.insert(object, fragments.iter().flatten().flatten().copied().collect())),
+            }
+        }
+        self.push_apart(&mut cut, opened);
+        let mut meshes = BTreeMap::new();
+        for of in cut {
+            let object = (of.body, of.piece);
+            let fragments = &objects[&object];
+            let again = |division| self.extruded(self.cut_at_rest(object, fragments, division)?);
+            match self.extruded(of).or_else(|| self.divisions(object.0).into_iter().find_map(again)) {
+                Some(mesh) => meshes.extend(mesh.map(|mesh| (object, mesh))),
+                None => drop(opened.insert(object, fragments.iter().flatten().flatten().copied().collect())),
+            }
+        }
+        meshes
+    }
+
+    /// The ways to divide a fragment of a body, the best first.
+    fn divisions(&self, body: u32) -> [RestDivision; 3] {
         let least = self.options.shortest_edge * body_size(self.scene, body);
         let size = self.options.cap_size;
         let apart = apart(self.options, body_size(self.scene, body));
         let plain = RestDivision { size, least, apart, keeps_edges: false, unfolds: false };
         let unfolded = RestDivision { unfolds: true, ..plain };
         let whole = RestDivision { least: 0.0, keeps_edges: true, ..plain };
-        [unfolded, plain, whole].into_iter().find_map(|division| self.at_rest_with(body, piece, fragments, division))
+        [unfolded, plain, whole]
     }
 
-    /// The same, in triangles as `division` asks for.
-    fn at_rest_with(
+    /// The triangles of fragments at rest, moved with the material.
+    fn cut_at_rest(
         &self,
-        body: u32,
-        piece: u32,
+        (body, piece): ObjectKey,
         fragments: &[Vec<Vec<SourceEdge>>],
         division: RestDivision,
-    ) -> Option<Option<Mesh>> {
+    ) -> Option<RestObject> {
         let (grid, interior) = (self.grids[body as usize], &self.interiors[body as usize]);
         let region = &self.scene.bodies[body as usize].region;
         let (low, high) = region.bounds();
@@ -74,9 +113,18 @@ impl Solids<'_> {
             return None;
         }
         part_caps(&mut caps, &mut sources, division.apart / grid.step);
+        Some(RestObject { body, piece, caps, sources, division })
+    }
+
+    /// The solid of an object; none where it is no solid. Nothing in it where it is smaller than asked for.
+    fn extruded(&self, object: RestObject) -> Option<Option<Mesh>> {
+        let RestObject { body, piece, mut caps, sources, division } = object;
+        let (grid, interior) = (self.grids[body as usize], &self.interiors[body as usize]);
+        let (low, high) = self.scene.bodies[body as usize].region.bounds();
+        let rest_grid = Grid::covering(&[low, high], 0.0);
         caps.retain(|(cap, _)| area(&cap.shape, grid) >= self.options.smallest_fragment);
         let extrusion = self.extrusion(body, &sources);
-        let bevels_at_rest = self.bevels_at_rest(&extrusion, &caps, grids[1]);
+        let bevels_at_rest = self.bevels_at_rest(&extrusion, &caps, rest_grid);
         let with_bevel = |((cap, within), at_rest): ((Cap, Vec<Carried>), Vec<BevelCorner>)| {
             let widths: Vec<f64> = at_rest.iter().map(|corner| corner.drop).collect();
             SolidCap { bevel: extrusion.bevel_like(&cap, &widths), cap, within }
@@ -84,7 +132,7 @@ impl Solids<'_> {
         if extrusion.bevel.is_some() && !caps.is_empty() {
             let mut all = sources.clone();
             let fine = |(made, at_rest): (&(Cap, Vec<Carried>), &Vec<BevelCorner>)| {
-                let found = extrusion.rest_bevel(&made.0, at_rest, all.len(), division, grids[1], (interior, piece));
+                let found = extrusion.rest_bevel(&made.0, at_rest, all.len(), division, rest_grid, (interior, piece));
                 let Some(RestBevel { cap, corners, within, sources }) = found else {
                     return with_bevel((made.clone(), at_rest.clone()));
                 };

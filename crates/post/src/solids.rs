@@ -8,9 +8,10 @@ use crate::error::PostError;
 use crate::extrude::Extrusion;
 use crate::history::attributes;
 use crate::interior::Interior;
+use crate::lattice::Enclosed;
 use crate::mesh::{Content, Mesh, MeshDefect, object_name};
 use crate::options::PostOptions;
-use crate::overlaps::{Enclosed, share_out_overlaps};
+use crate::overlaps::share_out_overlaps;
 use crate::relief::Relief;
 use crate::short_edges::Growth;
 use crate::slivers::without_slivers;
@@ -23,7 +24,7 @@ use std::collections::BTreeMap;
 /// Overlaps of fragments that are at most so wide in the mean are inaccuracies of contact, in cells: faces that press
 /// on each other sink in by up to a tenth of a cell, what has no particle of its own by some more, and shards of a few
 /// particles, driven into each other by others, by up to .36 (`glass-impact`).
-const WIDEST_OVERLAP: f64 = 0.4;
+pub(crate) const WIDEST_OVERLAP: f64 = 0.4;
 
 /// Body and number of an object.
 pub(crate) type ObjectKey = (u32, u32);

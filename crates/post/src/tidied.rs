@@ -2,9 +2,9 @@
 
 use crate::boolean::Edge;
 use crate::error::PostError;
+use crate::lattice::Enclosed;
 use crate::narrows::part_narrows;
 use crate::needles::blunt_needles;
-use crate::overlaps::Enclosed;
 use crate::pinch::part_pinches;
 use crate::short_edges::{Growth, without_short_edges};
 use crate::slivers::{drop_narrow_parts, fill_narrow_holes, without_slivers};
