@@ -114,6 +114,20 @@ fn threads_change_no_bit_and_each_coloring_and_theme_differs() {
     }
 }
 
+/// Truth: what is in one piece has nothing to be moved away from. The closed notch, .3 of the 1 m that the plate is
+/// high, is a line in the picture.
+#[test]
+fn what_is_still_whole_is_shown_with_its_cracks_where_fragments_are_to_be_moved_apart() {
+    let folder = folder_with("plate.toml", &SCENE.replace("[output]", "[output]\nexplode = { factor = 0.5 }"));
+    let (code, _, told) = said(folder.path(), &["sim", "plate.toml", "--quiet"]);
+    assert_eq!(code, 0, "{told}");
+    preview(folder.path(), &["--frames", "3", "--pictures", "frames", "--size", "800"]);
+    let (width, _, pixels) = pixels(&folder.path().join("out/plate/preview/plate.0003.png"));
+    let is_red = |[r, g, b]: &[u8; 3]| i32::from(*r) > i32::from(*g).max(i32::from(*b)) + 40;
+    let rows = pixels.chunks(width).filter(|row| row.iter().any(is_red)).count();
+    assert!(rows > 60, "{rows} rows");
+}
+
 #[test]
 fn a_picture_of_others_is_kept_and_ours_are_replaced() {
     let folder = run();

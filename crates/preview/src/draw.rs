@@ -10,8 +10,9 @@ use crate::rims::rims;
 use crate::survey::Survey;
 use crate::{crack_lines, inclusions, legend, tip_marks};
 use fissure_post::{FrameMeshes, Mesh, Slot};
-use fissure_scene::{Frame, HeldParticles, Part, Scene};
+use fissure_scene::{Curve, Frame, HeldParticles, Part, ParticleFrame, Scene};
 use nalgebra::Vector3;
+use std::collections::BTreeMap;
 use tiny_skia::{LineCap, LineJoin, PathBuilder, Stroke, Transform};
 
 /// Pixels of the raster for one of the picture, each way.
@@ -77,9 +78,18 @@ pub fn draw_frame(
     Ok(picture)
 }
 
-/// Whether the meshes lie where the material is, so that what the frame tells can be drawn over them.
+/// Whether the meshes lie where the material is, so that what the frame tells can be drawn over them: fragments only
+/// are moved away from the middle of their body.
 fn is_in_place(scene: &Scene, frame: &Frame) -> bool {
-    scene.output.explode.as_ref().is_none_or(|curve| curve.value(frame.time) == 0.0)
+    let is_still = |curve: &Curve| curve.value(frame.time) == 0.0;
+    scene.output.explode.as_ref().is_none_or(is_still) || are_whole(&frame.particles)
+}
+
+/// Whether no body has two fragments with a particle in them.
+fn are_whole(particles: &ParticleFrame) -> bool {
+    let mut pieces = BTreeMap::new();
+    let mut is_first = |(body, piece): (&u32, &u32)| pieces.entry(*body).or_insert(*piece) == piece;
+    particles.body.iter().zip(&particles.piece).all(&mut is_first)
 }
 
 /// Solids and colliders, lit.

@@ -38,7 +38,9 @@ pub(crate) fn choose(scene: &Scene, elastic: &[Elastic]) -> Choice {
             format!("strains of about {strain:.1e} are expected, more than {SMALL_STRAIN}"),
         );
     }
-    chosen(Formulation::Total, format!("every material is elastic and strains of about {strain:.1e} are expected"))
+    let strains =
+        if strain > 0.0 { format!("strains of about {strain:.1e} are") } else { "no strains to speak of are".into() };
+    chosen(Formulation::Total, format!("every material is elastic and {strains} expected"))
 }
 
 /// The scene with the kernel its formulation needs: a bilinear one, the choice where particles never move through the
