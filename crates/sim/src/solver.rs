@@ -114,8 +114,8 @@ pub(crate) trait Snapshot {
     fn save(&self) -> Result<Vec<u8>, SimulationError>;
 }
 
-/// A moment of a solver at which tips can be looked at.
-pub(crate) trait Observed {
+/// A moment of a solver at which tips can be looked at, several at once.
+pub(crate) trait Observed: Sync {
     /// Whether its zones tell how a crack is bent behind its tip.
     fn tells_bends(&self) -> bool;
 

@@ -84,6 +84,17 @@ pub(crate) fn ranges<R: Send>(count: usize, work: impl Fn(Range<usize>) -> R + S
     }
 }
 
+/// What `work` makes of each of some items, in order, where each takes as long as some ten thousand numbers: from a few
+/// on it is handed to threads that have to be woken.
+pub(crate) fn of_each<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
+    let fewest = if is_at_hand() { 2 } else { 4 };
+    if current_num_threads() > 1 && items.len() >= fewest {
+        items.par_iter().map(work).collect()
+    } else {
+        items.iter().map(work).collect()
+    }
+}
+
 /// The sum of the products of two lists of one length.
 pub(crate) fn dot(one: &[f64], other: &[f64]) -> f64 {
     // Some sums beside each other, which need not wait for each other.
@@ -197,6 +208,19 @@ mod tests {
             let alone = with(1, |k| (k as f64).sin());
             for threads in [2, 3] {
                 assert_eq!(with(threads, |k| (k as f64).sin()).map(f64::to_bits), alone.map(f64::to_bits), "{count}");
+            }
+        }
+    }
+
+    /// Truth: the items one by one, in their order, by any number of threads.
+    #[test]
+    fn what_is_made_of_each_comes_in_order() {
+        let items: Vec<u64> = (0..57).collect();
+        for threads in [1, 2, 3] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            for count in [0, 1, 2, 3, 4, items.len()] {
+                let squares = pool.install(|| of_each(&items[..count], |x| x * x));
+                assert_eq!(squares, items[..count].iter().map(|x| x * x).collect::<Vec<_>>());
             }
         }
     }

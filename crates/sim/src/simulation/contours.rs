@@ -13,10 +13,15 @@ impl ContourWatch {
         self.0.iter_mut().for_each(Vec::clear);
     }
 
-    /// A tip is looked at: what `read` measures at it is kept.
-    pub(super) fn look(&mut self, read: impl FnOnce() -> Vec<ContourReading>) {
+    /// Whether anybody wants any.
+    pub(super) fn is_wanted(&self) -> bool {
+        self.0.is_some()
+    }
+
+    /// Keeps what was measured at a tip.
+    pub(super) fn keep(&mut self, found: Vec<ContourReading>) {
         if let Some(readings) = &mut self.0 {
-            readings.extend(read());
+            readings.extend(found);
         }
     }
 }

@@ -8,6 +8,7 @@ use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::tip::Tip;
 use crate::growth::{self, Advance};
 use crate::solver::Observed;
+use crate::threads;
 use crate::tip::gauge::Gauge;
 use fissure_scene::{CrackEnd, End, Point, Scene, TipState, Vector};
 
@@ -92,16 +93,21 @@ impl Simulation {
         let mut assessed: Vec<Option<Assessment>> = Vec::with_capacity(live.len());
         contours.clear();
         stages.enter(Stage::Motion);
+        let is_wanted = contours.is_wanted();
         let mut observe = |moment: &dyn Observed| {
             stages.enter(Stage::Looks);
-            for &id in &live {
+            let look = |&id: &TipId| {
                 let toughness = if spares { tough_at_rest(cracks, id, scene) } else { None };
                 if toughness.is_some_and(|toughness| gauge.is_below(moment, cracks, id, FAR_FROM_GROWTH * toughness)) {
-                    assessed.push(None);
-                    continue;
+                    return (None, Vec::new());
                 }
-                assessed.push(Some(growth::assess(&gauge.read(moment, cracks, id), scene)));
-                contours.look(|| gauge.contours(moment, cracks, id));
+                let found = growth::assess(&gauge.read(moment, cracks, id), scene);
+                (Some(found), if is_wanted { gauge.contours(moment, cracks, id) } else { Vec::new() })
+            };
+            // Looks change nothing, so that it does not matter which tip comes first.
+            for (found, of_contours) in threads::of_each(&live, look) {
+                assessed.push(found);
+                contours.keep(of_contours);
             }
             stages.enter(Stage::Motion);
         };
