@@ -1,6 +1,7 @@
 //! Looking at a moment of the solver: what is around a tip, and where it is.
 
 use super::contact::Contacts;
+use super::disc::particles_of_disc;
 use super::lattice::Lattice;
 use super::loads::Loads;
 use super::motion::Motion;
@@ -131,31 +132,17 @@ impl Look<'_> {
     ) -> (Vec<QuadraturePoint>, Matrix, [Matrix; 2]) {
         let Self { lattice, motion, .. } = *self;
         let particles = &lattice.particles;
-        let line = cracks.of(id);
         let tip = cracks.position(id);
-        let s = particles.spacing;
-        let center = (tip - particles.anchor) / s;
-        let reach = (radius / s).ceil() as i32 + 1;
-        let center = [center.x.floor() as i32, center.y.floor() as i32];
-        let across = 2 * reach.clamp(0, 64) as usize + 2;
-        let mut found: Vec<(usize, Matrix, ParticleRates)> = Vec::with_capacity(across * across);
-        let mut mean = Matrix::zeros();
-        let mut reader = lattice.reader();
-        let (low, high) = (center.map(|c| c.saturating_sub(reach)), center.map(|c| c.saturating_add(reach)));
-        for p in particles.within(low, high) {
-            if (particles.rest[p] - tip).norm_squared() < radius * radius && particles.body[p] == line.body {
-                let (h, rates) = reader.strain_and_rates(p, motion);
-                mean += h;
-                found.push((p, h, rates));
-            }
-        }
+        let found = particles_of_disc(lattice, motion, cracks.of(id).body, (tip, radius));
+        let mean = found.iter().fold(Matrix::zeros(), |sum, (_, strain, _)| sum + strain);
         let mean = mean / found.len().max(1) as f64;
         // Rigid turn R of the surroundings (polar decomposition of the mean F), then into the tip frame.
         let (rotation, _) = turn(2.0 + mean.m11 + mean.m22, mean.m21 - mean.m12);
         let back = rotation.transpose();
         let (_, back_minus_one) = turn(2.0 + mean.m11 + mean.m22, mean.m12 - mean.m21);
         let frame = Matrix::new(ahead.x, ahead.y, -ahead.y, ahead.x);
-        let mut points = Vec::with_capacity(found.len() + 8 * across);
+        let reader = lattice.reader();
+        let mut points = Vec::with_capacity(found.len() + found.len() / 4);
         for (p, h, rates) in found {
             let e = lattice.material(p);
             let into = |m: Matrix| frame * m * frame.transpose();
@@ -180,7 +167,12 @@ impl Look<'_> {
                 }
             };
             let whole = (1.0, Vector::zeros());
-            points.push(part(h, rates, lattice.layout.cut.part_of(p).unwrap_or(whole)));
+            let own = lattice.layout.cut.part_of(p);
+            points.push(part(h, rates, own.unwrap_or(whole)));
+            // What no crack cuts has nothing across one.
+            if own.is_none() {
+                continue;
+            }
             if let (Some(h), Some(rates)) = (reader.far_strain(p, &motion.displacement), reader.far_rates(p, motion)) {
                 points.push(part(h, rates, lattice.layout.far.part_of(p).unwrap_or(whole)));
             }

@@ -15,6 +15,7 @@ mod colliders;
 mod contact;
 mod cut;
 mod cutting;
+mod disc;
 mod edge_means;
 mod field_vectors;
 mod held_points;
