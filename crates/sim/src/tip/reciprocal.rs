@@ -31,6 +31,8 @@ const PIECE: f64 = 0.125;
 const STRAIGHT: f64 = 1.0;
 /// Particles so near, in cells, tell how a face moves.
 const FACE_REACH: f64 = 1.5;
+/// What two distances have to differ by, as part of them, to differ whatever rounding has done to them.
+const ROUND_OFF: f64 = 1e-9;
 
 /// A quadrature point with the face that it sees.
 struct Sided<'a> {
@@ -66,8 +68,17 @@ pub(crate) fn reciprocal_integrals(
     let fields = |place: Vector, side: Option<Side>| {
         dual_fields(place.norm(), Bend::angle(place.into(), side), tip_material.mu, tip_material.kolosov)
     };
-    let points: Vec<Sided<'_>> =
-        zone.points.iter().map(|point| Sided { point, side: bend.side(point.place.into(), point.side) }).collect();
+    let face_reach = FACE_REACH * cell_size;
+    let mut points: Vec<Sided<'_>> = Vec::with_capacity(zone.points.len());
+    // Those near each face, left and right.
+    let mut beside: [Vec<&QuadraturePoint>; 2] = Default::default();
+    for point in &zone.points {
+        let seen = bend.side(point.place.into(), point.side);
+        points.push(Sided { point, side: seen.map(|of| of.0) });
+        if let Some((side, _)) = seen.filter(|of| of.1 < face_reach * (1.0 + ROUND_OFF)) {
+            beside[usize::from(side == Side::Below)].push(point);
+        }
+    }
     let shift = tip_displacement(zone, cell_size);
     let mut m = [0.0; 2];
     for Sided { point: p, side } in &points {
@@ -90,8 +101,8 @@ pub(crate) fn reciprocal_integrals(
             continue;
         }
         let out_of_left = Vector::new(stretch.toward.y, -stretch.toward.x);
-        for side in [Side::Above, Side::Below] {
-            let Some(moved) = face_displacement(&points, side, place, FACE_REACH * cell_size) else { continue };
+        for (side, beside) in [Side::Above, Side::Below].into_iter().zip(&beside) {
+            let Some(moved) = face_displacement(beside, place, face_reach) else { continue };
             let outward = out_of_left * (side.sign() * q * stretch.length);
             for (mode, dual) in fields(place.coords, Some(side)).iter().enumerate() {
                 m[mode] += (dual.stress * outward).dot(&(moved - shift));
@@ -141,11 +152,11 @@ fn tip_displacement(zone: &TipZone, cell_size: f64) -> Vector {
     sum / f64::max(count, 1.0)
 }
 
-/// How the face of one side moves at a place on the crack [m], from the particles on that side within `reach` [m]; none
+/// How the face of one side moves at a place on the crack [m], from the particles `beside` it within `reach` [m]; none
 /// where there are none.
-fn face_displacement(points: &[Sided<'_>], side: Side, place: Point, reach: f64) -> Option<Vector> {
+fn face_displacement(beside: &[&QuadraturePoint], place: Point, reach: f64) -> Option<Vector> {
     let (mut sum, mut volume) = (Vector::zeros(), 0.0);
-    for Sided { point, .. } in points.iter().filter(|p| p.side == Some(side)) {
+    for point in beside {
         let arm = point.place - place.coords;
         let nearness = 1.0 - arm.norm() / reach;
         if nearness > 0.0 {

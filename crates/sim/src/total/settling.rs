@@ -70,13 +70,14 @@ impl Total {
         }
         let is_free = !self.lattice.has_ties();
         let mut payers = if is_free { Vec::new() } else { payers(cracks) };
+        let by_column = by_column(&payers);
         for misfit in &mut strained {
             let place = match misfit.of {
                 Strained::Own(row) => self.lattice.particles.rest[self.lattice.layout.cut.particle_of(row)],
                 Strained::Across(row) => self.lattice.particles.rest[self.lattice.layout.far.particle_of(row)],
                 Strained::Tie(id, _) => cracks.position(id),
             };
-            misfit.payers = nearest(&payers, place, self.lattice.grid.cell_size);
+            misfit.payers = nearest(&by_column, place, self.lattice.grid.cell_size);
             let share = misfit.gain / misfit.payers.len() as f64;
             misfit.payers.iter().for_each(|&k| payers[k].asked += share);
         }
@@ -138,12 +139,21 @@ fn payers(cracks: &Cracks) -> Vec<Payer> {
     cracks.ids().filter_map(payer).collect()
 }
 
-/// The payers nearest to a place: more than one where they are equally near.
-fn nearest(payers: &[Payer], place: Point, cell_size: f64) -> SmallVec<[usize; 4]> {
+/// Where payers are and what their numbers are, from left to right.
+fn by_column(payers: &[Payer]) -> Vec<(Point, usize)> {
+    let mut places: Vec<(Point, usize)> = payers.iter().enumerate().map(|(k, payer)| (payer.place, k)).collect();
+    places.sort_unstable_by(|a, b| a.0.x.total_cmp(&b.0.x));
+    places
+}
+
+/// The payers nearest to a place, of those that [`by_column`] gives: more than one where they are equally near.
+fn nearest(payers: &[(Point, usize)], place: Point, cell_size: f64) -> SmallVec<[usize; 4]> {
     let far = (REACH + 1.0) * cell_size;
     let mut near: SmallVec<[(usize, f64); 16]> = SmallVec::new();
-    for (k, arm) in payers.iter().map(|payer| payer.place - place).enumerate() {
-        if arm.amax() < far {
+    let from = payers.partition_point(|payer| payer.0.x < place.x - far);
+    for &(payer, k) in payers[from..].iter().take_while(|payer| payer.0.x <= place.x + far) {
+        let arm = payer - place;
+        if arm.y.abs() < far {
             near.push((k, arm.norm() / cell_size));
         }
     }
@@ -152,4 +162,35 @@ fn nearest(payers: &[Payer], place: Point, cell_size: f64) -> SmallVec<[usize; 4
         return SmallVec::new();
     }
     near.into_iter().filter(|of| of.1 <= least + ALIKE).map(|of| of.0).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fissure_scene::End;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Truth: the distances to all of them. Tips crowded or far apart, some in one place.
+        #[test]
+        fn those_pay_that_are_nearest(
+            places in prop::collection::vec([-40_i32..40, -40_i32..40], 0..60), place in [-45.0_f64..45.0, -45.0_f64..45.0],
+            cell_size in 0.3_f64..4.0,
+        ) {
+            let payer = |(crack, &[x, y]): (usize, &[i32; 2])| Payer {
+                id: TipId { crack, end: End::End },
+                place: Point::new(f64::from(x), f64::from(y)),
+                means: 1.0,
+                asked: 0.0,
+                given: 0.0,
+            };
+            let payers: Vec<Payer> = places.iter().enumerate().map(payer).collect();
+            let mut found = nearest(&by_column(&payers), place.into(), cell_size).to_vec();
+            found.sort_unstable();
+            let ways: Vec<f64> = payers.iter().map(|payer| (payer.place - Point::from(place)).norm() / cell_size).collect();
+            let least = ways.iter().copied().fold(f64::INFINITY, f64::min);
+            let pays = |k: &usize| least <= REACH && ways[*k] <= least + ALIKE;
+            prop_assert_eq!(found, (0..payers.len()).filter(pays).collect::<Vec<_>>());
+        }
+    }
 }
