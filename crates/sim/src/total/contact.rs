@@ -24,6 +24,8 @@
 //! as much (K_I up to .13 of K_II). There faces that slide count as apart until they overlap by that, unless they press
 //! on each other behind as well, where the fields know: what is pressed together there is so up to the tip.
 
+mod answers;
+
 use super::lattice::Lattice;
 use super::motion::Motion;
 use super::near::Near;
@@ -36,6 +38,7 @@ use crate::contact::neighbours::{MATCHED, TOGETHER};
 use crate::crack::Crack;
 use crate::crack::cracks::{Cracks, Stretch};
 use crate::saved::{self, Fits};
+use answers::Answers;
 use fissure_plane::{Point, Vector};
 use fissure_scene::{CrackEnd, End};
 use smallvec::{SmallVec, smallvec};
@@ -311,13 +314,16 @@ impl Contacts {
         let Some(friction) = self.friction else { return };
         let mut meetings = self.meetings((probes, cracks, touching), motion, kick, time_step);
         let masses = self.masses(mass, ties, &meetings);
-        for meeting in &mut meetings {
+        let mut answers = Answers::new(meetings.len());
+        self.pushed.resize(mass.len(), false);
+        for (k, meeting) in meetings.iter_mut().enumerate() {
             meeting.impulse[1] = borne_by_friction(meeting.impulse[1], friction, meeting.impulse[0]);
             if meeting.impulse[0] > 0.0 {
-                self.push(meeting.point, meeting.whole(), &masses, motion);
+                answers.note_moves(k, &self.points[meeting.point], &masses);
+                answers.push(k, meeting.whole(), &mut self.pushed, motion);
             }
         }
-        self.relax(meetings, friction, masses, motion, kick);
+        self.relax((meetings, answers), friction, masses, motion, kick);
     }
 
     /// Goes on with the impulses of [`Contacts::resolve`] after velocities have changed.
@@ -332,11 +338,19 @@ impl Contacts {
         let Some(friction) = self.friction else { return };
         let meetings = self.meetings((probes, cracks, touching), motion, kick, time_step);
         let masses = self.masses(mass, ties, &meetings);
-        self.relax(meetings, friction, masses, motion, kick);
+        let answers = Answers::new(meetings.len());
+        self.relax((meetings, answers), friction, masses, motion, kick);
     }
 
     /// Goes through all meetings until none approaches more than it may, or often enough; keeps their forces.
-    fn relax(&mut self, mut meetings: Vec<Meeting>, friction: f64, masses: Masses<'_>, motion: &mut Motion, kick: f64) {
+    fn relax(
+        &mut self,
+        (mut meetings, mut answers): (Vec<Meeting>, Answers),
+        friction: f64,
+        masses: Masses<'_>,
+        motion: &mut Motion,
+        kick: f64,
+    ) {
         if meetings.is_empty() {
             self.points.iter_mut().for_each(|point| point.force = Vector::zeros());
             self.pressed.clear();
@@ -345,27 +359,36 @@ impl Contacts {
         // All others stay as they are until one that shares a field with them is pushed.
         let fields = masses.mass.len();
         let mut candidates = self.candidates(&meetings, fields);
+        let mut acting: Vec<usize> = Vec::new();
+        let mut before: Vec<usize> = Vec::new();
         for _ in 0..ROUNDS {
             let acts = |&k: &usize| {
                 let meeting = &meetings[k];
                 meeting.impulse[0] > 0.0
                     || self.points[meeting.point].speed(motion).dot(&meeting.normal) < meeting.allowed
             };
-            let acting: Vec<usize> = candidates.iter().copied().filter(acts).collect();
+            std::mem::swap(&mut acting, &mut before);
+            acting.clear();
+            acting.extend(candidates.iter().copied().filter(acts));
             if acting.is_empty() {
                 break;
             }
-            self.share_fields(acting.iter().map(|&k| meetings[k].point), fields);
-            let changes: Vec<[f64; 2]> =
-                acting.iter().map(|&k| self.change(&meetings[k], friction, &masses, motion)).collect();
-            self.forget_shares(acting.iter().map(|&k| meetings[k].point));
+            // As a rule those that act are the same from round to round, and share fields as they did.
+            if acting != before {
+                let points = || acting.iter().map(|&k| meetings[k].point);
+                self.share_fields(points(), fields);
+                answers.note((&acting, &meetings, &self.points), &masses, &self.sharing);
+                self.forget_shares(points());
+            }
+            let change = |(&k, &reduced): (&usize, &f64)| self.change(&meetings[k], friction, reduced, motion);
+            let changes: Vec<[f64; 2]> = acting.iter().zip(&answers.reduced).map(change).collect();
             let (mut change, mut largest, mut spreads) = (0.0_f64, 0.0_f64, false);
             for (&k, changed) in acting.iter().zip(changes) {
                 let meeting = &mut meetings[k];
                 let before = std::mem::replace(&mut meeting.impulse, changed);
                 let by = [changed[0] - before[0], changed[1] - before[1]];
-                let (point, impulse) = (meeting.point, Meeting { impulse: by, ..*meeting }.whole());
-                spreads |= self.push(point, impulse, &masses, motion);
+                let impulse = Meeting { impulse: by, ..*meeting }.whole();
+                spreads |= answers.push(k, impulse, &mut self.pushed, motion);
                 change = change.max(by[0].abs()).max(by[1].abs());
                 largest = largest.max(changed[0]);
             }
@@ -413,30 +436,10 @@ impl Contacts {
         (0..meetings.len()).filter(|&k| may_act(&meetings[k])).collect()
     }
 
-    /// Gives an impulse to the face above a point and takes it from the face below. Whether that moves a field that
-    /// nothing has pushed before in this step.
-    fn push(&mut self, point: usize, impulse: Vector, masses: &Masses<'_>, motion: &mut Motion) -> bool {
-        let Self { points, pushed, .. } = self;
-        pushed.resize(masses.mass.len(), false);
-        let mut is_new = false;
-        for pair in &points[point].fields {
-            for (field, sign) in [(pair.above, 1.0), (pair.below, -1.0)] {
-                masses.each_moved(field, &mut |moved, response| {
-                    for axis in 0..2 {
-                        motion.velocity[axis][moved] += sign * (impulse[axis] * pair.weight * response);
-                    }
-                    is_new |= !std::mem::replace(&mut pushed[moved], true);
-                });
-            }
-        }
-        is_new
-    }
-
-    /// The impulse that a meeting would like, with the velocities as they are and its part of the masses.
-    fn change(&self, meeting: &Meeting, friction: f64, masses: &Masses<'_>, motion: &Motion) -> [f64; 2] {
-        let point = &self.points[meeting.point];
-        let speed = point.speed(motion);
-        let reduced = 1.0 / point.fields.iter().map(|pair| masses.mobility(pair, Some(&self.sharing))).sum::<f64>();
+    /// The impulse that a meeting would like, with the velocities as they are; `reduced`: its part of the masses
+    /// [kg/m].
+    fn change(&self, meeting: &Meeting, friction: f64, reduced: f64, motion: &Motion) -> [f64; 2] {
+        let speed = self.points[meeting.point].speed(motion);
         let [normal, tangential] = meeting.impulse;
         let normal = (normal + (meeting.allowed - speed.dot(&meeting.normal)) * reduced).max(0.0);
         let sticking = tangential - speed.dot(&left_of(meeting.normal)) * reduced;
