@@ -66,6 +66,7 @@ impl Simulation {
         &mut self,
         watch: &mut dyn FnMut(&Self, &Progress) -> ControlFlow<()>,
     ) -> Result<bool, SimulationError> {
+        self.measured = None;
         for tip in self.state.cracks.tips_mut() {
             tip.run_at_frame = tip.run();
         }

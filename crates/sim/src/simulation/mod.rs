@@ -27,7 +27,7 @@ use crate::crack::fragments;
 use crate::formulation::{self, Choice};
 use crate::material::elastic::Elastic;
 use crate::particles::Particles;
-use crate::solver::Solver;
+use crate::solver::{Solver, SolverEnergies};
 use crate::{SimulationError, foresight, memory};
 use branching_off::WaitingBranch;
 use contours::ContourWatch;
@@ -52,6 +52,8 @@ pub struct Simulation {
     spares_looks: bool,
     /// Largest stable time step at the last look [s].
     stable_time_step: f64,
+    /// What the watch at the end of a frame has found: see [`Simulation::measure`]. None once anything moves on.
+    measured: Option<(SolverEnergies, f64)>,
 }
 
 /// What a saved state holds besides the solver's own.
@@ -132,6 +134,7 @@ impl Simulation {
             contours: ContourWatch::default(),
             spares_looks: false,
             stable_time_step: 0.0,
+            measured: None,
         };
         simulation.split_fragments();
         let energies = simulation.solver.energies();

@@ -21,6 +21,7 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn relax(&mut self, tolerance: f64, most_steps: u64) -> Result<u64, SimulationError> {
+        self.measured = None;
         let time_step = self.largest_time_step();
         let time = self.state.time;
         let (mut peak, mut round_peak) = (0.0, 0.0_f64);

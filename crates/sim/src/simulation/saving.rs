@@ -78,6 +78,7 @@ impl Simulation {
             contours: super::contours::ContourWatch::default(),
             spares_looks: false,
             stable_time_step: 0.0,
+            measured: None,
         })
     }
 }

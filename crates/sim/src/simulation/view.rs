@@ -4,7 +4,7 @@ use super::{Counts, Simulation};
 use crate::boundary::collider::Obstacle;
 use crate::boundary::supports::Reaction;
 use crate::material::elastic::Elastic;
-use crate::solver::Observed;
+use crate::solver::{Observed, SolverEnergies};
 use fissure_scene::{Energies, Formulation, Frame, Pose, Scene, SupportRecord, TipRecord, Vector};
 
 impl Simulation {
@@ -71,13 +71,23 @@ impl Simulation {
 
     /// Energy budget now, with the kinetic energy of half a step before in the total formulation.
     pub fn energies(&self) -> Energies {
-        let energies = self.solver.energies();
+        self.budget(self.solver.energies(), 0.0)
+    }
+
+    /// With what the kinetic energy lacks [J/m].
+    fn budget(&self, of: SolverEnergies, lag: f64) -> Energies {
         Energies {
-            kinetic: energies.kinetic,
-            strain: energies.strain,
-            external_work: energies.external_work,
+            kinetic: of.kinetic + lag,
+            strain: of.strain,
+            external_work: of.external_work,
             crack: self.state.crack_energy,
         }
+    }
+
+    /// Energies now, and what the kinetic one lacks because its velocities are those of half a step before [J/m]. Costs
+    /// an evaluation of all forces.
+    pub(super) fn measure(&self) -> (SolverEnergies, f64) {
+        (self.solver.energies(), self.solver.energy_of_lag())
     }
 
     /// Kinetic and strain energy of one moment [J/m]. Those that [`Simulation::energies`] tells belong to moments half
@@ -90,8 +100,8 @@ impl Simulation {
     /// Energy budget now, as in a frame, with the kinetic energy of the same moment as the strain energy. Costs an
     /// evaluation of all forces.
     pub fn energies_of_one_moment(&self) -> Energies {
-        let energies = self.energies();
-        Energies { kinetic: energies.kinetic + self.solver.energy_of_lag(), ..energies }
+        let (energies, lag) = self.measured.unwrap_or_else(|| self.measure());
+        self.budget(energies, lag)
     }
 
     /// Kinetic energy, half a step before now in the total formulation [J/m]; cheap, unlike the other energies.
