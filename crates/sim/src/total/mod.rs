@@ -45,6 +45,7 @@ mod surfaces;
 mod tests;
 mod tie;
 mod ties;
+mod tip_points;
 mod touching;
 
 use crate::SimulationError;
