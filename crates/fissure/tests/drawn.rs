@@ -106,6 +106,22 @@ fn an_edited_scene_is_kept() {
     assert_eq!(take.scene().materials[take.scene().bodies[0].material].name, "pmma");
 }
 
+/// Truth: by hand. Of two guides that begin near one tip the nearer one leads it; the other one ends short of both,
+/// which is told with its name, instead of a scene that cannot be read.
+#[test]
+fn a_tip_follows_the_nearest_of_two_guides() {
+    let twig = "<path id='guide_2' d='M150 100 L90 66'/></svg>";
+    for drawing in [PLATE.replace("</svg>", twig), PLATE.replace("guide 1", "guide 3").replace("</svg>", twig)] {
+        let folder = folder(&drawing);
+        let (exit, _, told) =
+            said(folder.path(), &["check", "plate.svg", "--material", "glass", "--thickness", "0.05"]);
+        assert_eq!(exit, 0, "{told}");
+        assert!(told.contains("no crack follows guide") && told.contains("from the nearest one"), "{told}");
+        let keys = told.lines().filter(|line| line.starts_with("guide_end = ")).count();
+        assert_eq!(keys, 1, "{told}");
+    }
+}
+
 /// Truth: the drawings. Without names a lone shape is the body and gets a notch; `check` writes nothing.
 #[test]
 fn an_icon_is_a_body_with_a_notch() {

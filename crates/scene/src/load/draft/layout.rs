@@ -82,9 +82,18 @@ impl Layout {
             let is_near = |distance: f64| distance <= GUIDE_TOLERANCE * particle_spacing;
             let branches = !is_near(nearest.0)
                 && (0..guides.len()).any(|of| of != k && branches_off(&guides[k], &guides[of], is_near));
-            (!branches).then_some((nearest.1, nearest.2))
+            (!branches).then_some(nearest)
         };
-        let guided = (0..guides.len()).map(tip).collect();
+        let tips: Vec<_> = (0..guides.len()).map(tip).collect();
+        // A tip follows one guide, the nearest; `check` tells of others, which end short of what they were drawn on.
+        let mut guided: Vec<Option<(usize, &'static str)>> = vec![None; guides.len()];
+        let mut nearest: Vec<_> = tips.into_iter().enumerate().filter_map(|(k, tip)| Some((k, tip?))).collect();
+        nearest.sort_by(|(_, a), (_, b)| a.0.total_cmp(&b.0));
+        for (k, (_, crack, key)) in nearest {
+            if !guided.contains(&Some((crack, key))) {
+                guided[k] = Some((crack, key));
+            }
+        }
         Ok(Self { notch, guided, pulls, particle_spacing })
     }
 }
