@@ -96,6 +96,7 @@ pub(crate) fn of_each<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sy
 }
 
 /// The sum of the products of two lists of one length.
+#[inline(always)]
 pub(crate) fn dot(one: &[f64], other: &[f64]) -> f64 {
     // Some sums beside each other, which need not wait for each other.
     const BESIDE: usize = 8;
