@@ -50,7 +50,7 @@ pub(crate) fn principal_stretches(h: &Matrix) -> [f64; 2] {
 ///
 /// Source: Stomakhin et al. 2013. `lambda` is that of the plane state ([`crate::Elastic`]). Finite for every finite
 /// `h`, inverted material included.
-#[inline(always)]
+#[inline]
 pub fn first_piola_stress(h: &Matrix, mu: f64, lambda: f64) -> Matrix {
     // J F⁻ᵀ is the cofactor matrix of F.
     let cofactor = Matrix::new(1.0 + h.m22, -h.m21, -h.m12, 1.0 + h.m11);
@@ -78,7 +78,7 @@ pub fn cauchy_stress(h: &Matrix, mu: f64, lambda: f64) -> Matrix {
 }
 
 /// Strain energy Ψ = μ|F - R|² + λ(J-1)²/2 per volume at rest [J/m³].
-#[inline(always)]
+#[inline]
 pub fn energy_density(h: &Matrix, mu: f64, lambda: f64) -> f64 {
     let change = volume_change(h);
     mu * deformation_beyond_rotation(h).norm_squared() + 0.5 * lambda * change * change

@@ -8,8 +8,8 @@ use super::motion::Motion;
 use super::pressure::Pressed;
 use super::probe::Probe;
 use super::probes::Probes;
+use super::reader::ParticleRates;
 use super::ties::Ties;
-use super::tip_points::{Seen, points_of};
 use crate::crack::DIRECTION_LENGTH;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::crack::crossing::Side;
@@ -131,6 +131,7 @@ impl Look<'_> {
         side_of: impl Fn(Point) -> Side,
     ) -> (Vec<QuadraturePoint>, Matrix, [Matrix; 2]) {
         let Self { lattice, motion, .. } = *self;
+        let particles = &lattice.particles;
         let tip = cracks.position(id);
         let found = particles_of_disc(lattice, motion, cracks.of(id).body, (tip, radius));
         let mean = found.iter().fold(Matrix::zeros(), |sum, (_, strain, _)| sum + strain);
@@ -140,8 +141,42 @@ impl Look<'_> {
         let back = rotation.transpose();
         let (_, back_minus_one) = turn(2.0 + mean.m11 + mean.m22, mean.m12 - mean.m21);
         let frame = Matrix::new(ahead.x, ahead.y, -ahead.y, ahead.x);
-        let seen = Seen { tip, ahead, frame, back: [back, back_minus_one], half_step: self.half_step };
-        let points = points_of(lattice, motion, found, seen, side_of);
+        let reader = lattice.reader();
+        let mut points = Vec::with_capacity(found.len() + found.len() / 4);
+        for (p, h, rates) in found {
+            let e = lattice.material(p);
+            let into = |m: Matrix| frame * m * frame.transpose();
+            let part = |h: Matrix, rates: ParticleRates, (share, way): (f64, Vector)| {
+                let place = particles.rest[p] + way;
+                let arm = place - tip;
+                let ParticleRates { displacement, velocity, velocity_gradient, acceleration } = rates;
+                let velocity = velocity - acceleration * self.half_step;
+                QuadraturePoint {
+                    place: frame * arm,
+                    displacement: frame * (back * (displacement + h * way) + back_minus_one * arm),
+                    side: side_of(place),
+                    volume: particles.volume[p] * share,
+                    stress: into(back * crate::first_piola_stress(&h, e.mu, e.lambda)),
+                    gradient: into(back * h + back_minus_one),
+                    energy: crate::energy_density(&h, e.mu, e.lambda),
+                    density: e.density,
+                    velocity: frame * (back * velocity),
+                    velocity_slope: frame * (back * (velocity_gradient * ahead)),
+                    acceleration: frame * (back * acceleration),
+                    material: particles.material[p],
+                }
+            };
+            let whole = (1.0, Vector::zeros());
+            let own = lattice.layout.cut.part_of(p);
+            points.push(part(h, rates, own.unwrap_or(whole)));
+            // What no crack cuts has nothing across one.
+            if own.is_none() {
+                continue;
+            }
+            if let (Some(h), Some(rates)) = (reader.far_strain(p, &motion.displacement), reader.far_rates(p, motion)) {
+                points.push(part(h, rates, lattice.layout.far.part_of(p).unwrap_or(whole)));
+            }
+        }
         (points, frame, [back, back_minus_one])
     }
 

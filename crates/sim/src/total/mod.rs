@@ -45,7 +45,6 @@ mod surfaces;
 mod tests;
 mod tie;
 mod ties;
-mod tip_points;
 mod touching;
 
 use crate::SimulationError;
