@@ -156,13 +156,24 @@ pub struct SolverSettings {
 }
 
 /// What bodies and fragments do to each other where they touch, complete.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ContactSettings {
     /// Coulomb friction between surfaces; infinite: stick.
     #[serde(with = "crate::infinite")]
     pub friction: f64,
     /// Pairs of materials with a friction of their own; of two that name the same pair the later one holds.
     pub pairs: Vec<PairFriction>,
+    /// The part of the speed, with which elasticity alone would throw them back, that bodies keep when they land [–].
+    pub restitution: f64,
+    /// The same of what has broken off a body.
+    pub fragment_restitution: f64,
+}
+
+impl Default for ContactSettings {
+    /// Without friction or loss.
+    fn default() -> Self {
+        Self { friction: 0.0, pairs: Vec::new(), restitution: 1.0, fragment_restitution: 1.0 }
+    }
 }
 
 /// Friction between two materials.

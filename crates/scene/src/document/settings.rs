@@ -3,7 +3,8 @@
 use super::{Ease, Switch};
 use crate::range::{
     ACUTE, AREA, BENDING, CELLS, CRITICAL_COMPRESSION, CRITICAL_STRETCH, DAMPING, FRACTION, FRAME, FRAME_RATE,
-    FRICTION, HARDENING, LENGTH, RELEASE_RATIO, SMOOTHING_CELLS, SPEED_FACTOR, TIME_STEP, WALL_CELLS, WIDTH, pairs,
+    FRICTION, HARDENING, LENGTH, RELEASE_RATIO, SMOOTHING_CELLS, SPEED_FACTOR, TIME_STEP, UNIT, WALL_CELLS, WIDTH,
+    pairs,
 };
 use crate::scene::Plasticity;
 use crate::settings::*;
@@ -83,6 +84,9 @@ pub struct SolverKeys {
 /// fallen on something slides off it in the end.
 const FRICTION_OF_DRY_SOLIDS: f64 = 0.5;
 
+/// What has fallen lies: nothing that breaks is so elastic that it springs back as waves alone would throw it.
+const RESTITUTION_OF_FRAGMENTS: f64 = 0.2;
+
 /// What bodies and fragments do to each other where they touch (total formulation; in the updated one the grid keeps
 /// them apart, without friction).
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
@@ -94,11 +98,23 @@ pub struct ContactKeys {
     pub friction: f64,
     /// Pairs of materials with a friction of their own.
     pub pairs: Vec<PairFrictionKeys>,
+    /// The part of the speed, with which their elasticity throws them back, that whole bodies keep when they land; 1:
+    /// all. Total formulation. Default: 1.
+    #[schemars(transform = UNIT.bounds())]
+    pub restitution: f64,
+    /// The same of what has broken off a body. Default: 0.2.
+    #[schemars(transform = UNIT.bounds())]
+    pub fragment_restitution: f64,
 }
 
 impl Default for ContactKeys {
     fn default() -> Self {
-        Self { friction: FRICTION_OF_DRY_SOLIDS, pairs: Vec::new() }
+        Self {
+            friction: FRICTION_OF_DRY_SOLIDS,
+            pairs: Vec::new(),
+            restitution: 1.0,
+            fragment_restitution: RESTITUTION_OF_FRAGMENTS,
+        }
     }
 }
 

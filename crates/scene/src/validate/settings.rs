@@ -254,6 +254,8 @@ impl Scene {
     fn validate_contact(&self) -> Check {
         let contact = |key: &str| KeyPath::setting("contact", key);
         FRICTION.check(contact("friction"), "the friction of contact", self.contact.friction)?;
+        UNIT.check(contact("restitution"), "the restitution of bodies", self.contact.restitution)?;
+        UNIT.check(contact("fragment_restitution"), "the restitution of fragments", self.contact.fragment_restitution)?;
         ITEMS.check(&contact("pairs"), "`pairs`", self.contact.pairs.len())?;
         for (i, pair) in self.contact.pairs.iter().enumerate() {
             let path = contact("pairs").then(i);

@@ -18,6 +18,8 @@ use std::f64::consts::PI;
 
 /// The radius is not made smaller than this, in cells: within it lie too few particles for an integral.
 const SMALLEST_RADIUS: f64 = 2.0;
+/// A tip nearer to an outline than this, in cells, has no domain of its own.
+const NECK: f64 = 1.5;
 /// A domain without a radius of its own reaches over this part of the way to what would spoil it ...
 const PART_OF_ROOM: f64 = 0.375;
 /// ... but over so many cells at least, ...
@@ -109,7 +111,12 @@ impl Gauge<'_> {
         if settings.crack_contact {
             split = without_overlap(split, found.closed);
         }
-        let decisive = decisive(j_integral, split, elastic.effective_modulus);
+        let known = if j_integral <= 0.0 && self.is_in_neck(cracks, id) {
+            split.energy_release_rate(elastic.effective_modulus)
+        } else {
+            j_integral
+        };
+        let decisive = decisive(known, split, elastic.effective_modulus);
         Reading {
             j_integral,
             modes: split,
@@ -145,8 +152,18 @@ impl Gauge<'_> {
         let Some(elastic) = self.material_at_tip(&zone) else { return f64::INFINITY };
         let j = release_rate(&zone, self.scene.cell_size, radius, self.scene.solver.area_term);
         // A NaN stays one: the square root of the larger of two numbers would be that of 0.
+        if j <= 0.0 && self.is_in_neck(cracks, id) {
+            return f64::INFINITY;
+        }
         let released = if j < 0.0 { 0.0 } else { j };
         MOST_EQUIVALENT * (elastic.effective_modulus * released).sqrt()
+    }
+
+    /// Whether an outline passes so near to a tip that J, which counts it, may be below zero while the tip opens. A
+    /// body that hangs by half a cell would do so for ever; K, however inexact there, knows that it is torn.
+    fn is_in_neck(&self, cracks: &Cracks, id: TipId) -> bool {
+        let region = &self.scene.bodies[cracks.of(id).body as usize].region;
+        region.distance_to_rings(cracks.position(id)) < NECK * self.scene.cell_size
     }
 
     /// The material of the particle nearest to a tip; none: there are no particles.

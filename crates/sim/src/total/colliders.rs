@@ -3,6 +3,7 @@
 use super::lattice::Lattice;
 use super::motion::Motion;
 use super::near::Near;
+use super::rebound::{Ground, Push};
 use super::ties::Ties;
 use crate::boundary::collider::Obstacle;
 use crate::boundary::constraints::Inertia;
@@ -137,13 +138,14 @@ impl Colliders {
     }
 
     /// Keeps the surface out of the obstacles where they are at the time `time` [s]. `gain`:
-    /// [`super::motion::force_of_impulse`].
+    /// [`super::motion::force_of_impulse`]. Tells `pushed` of each push.
     pub(super) fn apply(
         &self,
         time: f64,
         gain: f64,
         (lattice, ties): (&Lattice, &Ties),
         motion: &mut Motion,
+        pushed: &mut dyn FnMut(Push),
     ) -> CollisionWork {
         let mut work = CollisionWork::default();
         for obstacle in &self.obstacles {
@@ -186,7 +188,14 @@ impl Colliders {
                 });
                 let impulse = (after - before) / own;
                 let before_kick = Vector::new(motion.before_kick()[0][d], motion.before_kick()[1][d]);
-                let of_motion = impulse.dot(&placed.velocity(place));
+                let of_obstacle = placed.velocity(place);
+                let of_motion = impulse.dot(&of_obstacle);
+                let along = found.normal.dot(&impulse);
+                // What sticks is pulled, too.
+                if along > 0.0 {
+                    let on = Ground::Collider(of_obstacle);
+                    pushed(Push { point: skin, field: node.field, on, impulse: found.normal * along });
+                }
                 work.of_motion += of_motion;
                 work.beyond += 0.5 * gain * impulse.dot(&(before_kick + after)) - of_motion;
                 inertia.response(node.field, &mut |moved, response| {

@@ -25,11 +25,13 @@ mod look;
 pub(crate) mod memory;
 mod motion;
 mod near;
+mod pieces;
 mod pressure;
 mod probe;
 mod probes;
 mod range;
 mod reader;
+mod rebound;
 mod recut;
 mod riders;
 mod rows;
@@ -65,6 +67,7 @@ use look::Look;
 use motion::Motion;
 use near::Near;
 use probes::Probes;
+use rebound::Rebound;
 use std::sync::{Arc, OnceLock};
 use stiffening::Stiffening;
 use supports::{HeldStep, Supports};
@@ -86,6 +89,7 @@ pub(crate) struct Total {
     colliders: Colliders,
     contacts: Contacts,
     touching: Touching,
+    rebound: Rebound,
     /// Work done by loads, supports and colliders so far, to the moment of the velocities [J/m].
     external_work: f64,
     /// Work of colliders beyond that of their motion so far: see [`colliders::CollisionWork::beyond`] [J/m].
@@ -178,6 +182,7 @@ impl Total {
             colliders: Colliders::new(scene, &lattice),
             contacts: Contacts::new(friction, &lattice, cracks),
             touching: Touching::new(scene, impulses),
+            rebound: Rebound::new(scene),
             scene: scene.clone(),
             lattice,
             motion,
@@ -231,7 +236,13 @@ impl Total {
     fn apply_boundaries(&mut self, middle: f64, time_step: f64, kick: f64) {
         self.apply_supports(middle, time_step, kick);
         let gain = motion::force_of_impulse(self.damping, kick);
-        let work = self.colliders.apply(middle, gain, (&self.lattice, &self.ties), &mut self.motion);
+        let Self { lattice, ties, motion, rebound, .. } = self;
+        let pushed = &mut |push| {
+            if rebound.is_on() {
+                rebound.add(push)
+            }
+        };
+        let work = self.colliders.apply(middle, gain, (lattice, ties), motion, pushed);
         self.external_work += work.of_motion;
         self.collision_work += work.beyond;
     }
@@ -310,6 +321,11 @@ impl Solver for Total {
         if touches && !self.colliders.is_empty() {
             self.touching.resolve_again(&mut self.motion);
         }
+        if self.rebound.is_on() {
+            let Self { lattice, motion, probes, supports, touching, rebound, .. } = self;
+            touching.each_push(probes, &mut |push| rebound.add(push));
+            rebound.end_step(lattice, supports.held(), motion);
+        }
         self.external_work += self.touching.keep(kick, &self.motion);
         // A force changes the kinetic energy by its impulse times the mean of the velocities before and after it. From
         // rest the impulse is half as long; what moves is moved over the whole step.
@@ -353,11 +369,13 @@ impl Solver for Total {
         let retied = self.ties.refresh(&near, recut, &self.lattice, &self.motion, cracks);
         self.supports.refresh(&near, &self.scene, &self.lattice, (&self.ties, &retied));
         self.touching.change(&near, has_mouthed);
+        self.rebound.change();
         held - self.ties.held(&self.motion) + lost
     }
 
     fn begin_run(&mut self) {
         self.touching.look_again();
+        self.rebound.look_again();
         self.look_at_stretch();
         self.stiffening.plan();
         self.steps_since_check = 0;

@@ -4,6 +4,7 @@ use super::lattice::Lattice;
 use super::motion::Motion;
 use super::near::Near;
 use super::probes::Probes;
+use super::rebound::{Ground, Push};
 use super::supports::HeldFields;
 use super::surfaces::{Surfaces, VertexKey, can_meet};
 use crate::contact::impulses::{Impulse, Meetings, Share, allowed};
@@ -40,6 +41,9 @@ pub(super) struct Touching {
     are_found: bool,
     steps_since_look: u32,
     meetings: Meetings,
+    /// Of each meeting, its vertex and one of what it meets; none where that is the other side of a crack, as it was
+    /// drawn.
+    landings: Vec<Option<[u32; 2]>>,
     /// What goes on from step to step.
     last: LastImpulses,
 }
@@ -107,6 +111,7 @@ impl Touching {
             are_found: false,
             steps_since_look: 0,
             meetings: Meetings::default(),
+            landings: Vec::new(),
             last,
         }
     }
@@ -196,6 +201,7 @@ impl Touching {
     /// Gives velocities the impulses of all that touches. `held`: fields that supports hold.
     pub(super) fn resolve(&mut self, moment: &Moment<'_>, held: &HeldFields, motion: &mut Motion) {
         self.meetings.clear();
+        self.landings.clear();
         let Some(surfaces) = &self.surfaces else { return };
         let Moment { probes, kick, time_step, .. } = *moment;
         for &v in self.neighbours.asked() {
@@ -213,22 +219,32 @@ impl Touching {
                 continue;
             }
             shares_of(&mut shares, surfaces, vertex, &found, moment, held);
-            let friction = self.friction(moment.scene, surfaces, vertex, &found);
+            let Meeting { ends, along, .. } = found;
+            let are_beside = were_within(&surfaces.surface, vertex, ends, along, TOGETHER * self.cell_size);
+            let friction = if are_beside {
+                moment.scene.solver.crack_friction
+            } else {
+                friction_between(moment.scene, surfaces, [vertex, ends[0]])
+            };
+            self.landings.push((!are_beside).then_some([vertex, ends[0]]));
             self.meetings.push(found.normal, least, friction, &mut shares, before);
         }
         self.meetings.begin(&mut motion.velocity);
         self.meetings.solve(&mut motion.velocity);
     }
 
-    /// Coulomb friction in a meeting: that of crack faces where pieces have slid along the crack between them, by no
-    /// more than faces do that are no pieces.
-    fn friction(&self, scene: &Scene, surfaces: &Surfaces, vertex: u32, found: &Meeting) -> f64 {
-        let Meeting { ends, along, .. } = *found;
-        if were_within(&surfaces.surface, vertex, ends, along, TOGETHER * self.cell_size) {
-            return scene.solver.crack_friction;
+    /// Tells `each` of the pushes of this step, but those between the two sides of a crack that have not slid along
+    /// each other by more than faces do that are no pieces.
+    pub(super) fn each_push(&self, probes: &Probes, each: &mut dyn FnMut(Push)) {
+        let Some(surfaces) = &self.surfaces else { return };
+        for (meeting, vertices) in self.landings.iter().enumerate() {
+            let impulse = self.meetings.along_normal(meeting);
+            let (Some([vertex, other]), true) = (*vertices, impulse != Vector::zeros()) else { continue };
+            let [field, on] = [vertex, other].map(|v| surfaces.probe(v, probes).entries.first().map(|entry| entry.0));
+            if let (Some(field), Some(on)) = (field, on) {
+                each(Push { point: self.place[vertex as usize], field, on: Ground::Field(on), impulse });
+            }
         }
-        let [own, other] = [vertex, ends[0]].map(|v| surfaces.surface.vertex(v).material as usize);
-        scene.contact.friction_between(own, other)
     }
 
     /// Goes on with the impulses of [`Touching::resolve`] after velocities have changed.
@@ -249,6 +265,12 @@ impl Touching {
         self.last.kick = kick;
         -self.meetings.work_on_held(&motion.velocity)
     }
+}
+
+/// Coulomb friction between the materials of two vertices.
+fn friction_between(scene: &Scene, surfaces: &Surfaces, vertices: [u32; 2]) -> f64 {
+    let [own, other] = vertices.map(|v| surfaces.surface.vertex(v).material as usize);
+    scene.contact.friction_between(own, other)
 }
 
 /// How the fields take part in a meeting.

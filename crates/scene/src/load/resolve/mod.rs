@@ -128,7 +128,12 @@ impl<'d> Resolver<'d> {
             materials,
             bodies,
             solver,
-            contact: ContactSettings { friction: document.contact.friction, pairs: Vec::new() },
+            contact: ContactSettings {
+                friction: document.contact.friction,
+                pairs: Vec::new(),
+                restitution: document.contact.restitution,
+                fragment_restitution: document.contact.fragment_restitution,
+            },
             growth,
         };
         scene.loads = self.loads(&scene, tolerance)?;
