@@ -86,7 +86,11 @@ impl Extrusion<'_> {
             contour.iter().zip(&mut bevels).map(place).collect()
         };
         let lines: Vec<Vec<Point>> = cap.shape.iter().map(line).collect();
-        let Divided { new, within, triangles } = divided(&lines, division, rest_grid)?;
+        let mut found = divided(&lines, division, rest_grid)?;
+        if self.has_new_beside_tips(cap, &found.new) {
+            found = divided(&lines, RestDivision { keeps_edges: true, ..division }, rest_grid)?;
+        }
+        let Divided { new, within, triangles } = found;
         let (corners, mut places) = self.rest_bevel_corners(cap, &lines, &new);
         places.extend(&within);
         let mut widths: Vec<f64> = at_rest.iter().map(|corner| corner.drop / self.grid.step).collect();
@@ -155,6 +159,18 @@ impl Extrusion<'_> {
             within: (corners.len()..places.len()).map(|k| Carried::within(places[k], velocities[k])).collect(),
             sources: sources(&shape, &corners),
             cap: Cap { shape, within: carried.now[corners.len()..].to_vec(), triangles },
+        })
+    }
+
+    /// Whether there are `new` corners in edges that end at the tip of a crack. Its faces are kept apart at the corners
+    /// that were there, and lie nearer to each other between the tip and the first of these.
+    fn has_new_beside_tips(&self, cap: &Cap, new: &[Vec<Vec<Point>>]) -> bool {
+        cap.shape.iter().zip(new).any(|(contour, new)| {
+            (0..contour.len()).any(|i| {
+                let before = (i + contour.len() - 1) % contour.len();
+                let [start, end] = [self.source(&contour[before]).carried[0], self.source(&contour[i]).carried[1]];
+                start.rest == end.rest && !(new[before].is_empty() && new[i].is_empty())
+            })
         })
     }
 

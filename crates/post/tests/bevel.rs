@@ -92,6 +92,30 @@ proptest! {
         prop_assert!(after > 15.0 || after > before - 3.0, "{} {}", before, after);
     }
 
+    /// Truth: what the guide promises of what is cut at rest. Bevelled cracks, closed or hardly open, with tips and
+    /// branches: vertices within 5e-5 of the body may be merged.
+    #[test]
+    fn bevels_of_what_is_cut_at_rest_may_be_merged_by_distance(
+        trunk in proptest::collection::vec(-1.5..1.5_f64, 5..13),
+        branch in proptest::collection::vec(-1.0..1.0_f64, 4..9),
+        tip in proptest::collection::vec(-0.5..0.5_f64, 3..9),
+        opening in 0.0..0.01_f64, bevel in 0.01..0.3_f64,
+    ) {
+        let (scene, frame) = cracked_square(&trunk, &branch, &tip, opening);
+        let [_, bevelled] = cut_solids(&scene, &frame, bevel, Cut::Rest);
+        for mesh in bevelled {
+            let mut places: Vec<[f64; 3]> = mesh.vertices.iter().map(|v| v.position).collect();
+            places.sort_by(|p, q| p.partial_cmp(q).unwrap());
+            places.dedup();
+            for (i, p) in places.iter().enumerate() {
+                for q in places[i + 1..].iter().take_while(|q| q[0] - p[0] < 1e-3) {
+                    let apart = (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
+                    prop_assert!(apart > 5e-5 * SIZE, "{} at {:?} {:?}", apart, p, q);
+                }
+            }
+        }
+    }
+
     /// Truth: closed form. Along a straight wall of length L in segments of length s, bevels of width w take off two
     /// prisms of area w²/2, which end in pyramids within the first and the last segment: w² (L − 4 s/3). In the plane
     /// strips end on the grid, so one of both widths is a whole number of its steps, which in a bevel of 16 mm on 20 m
