@@ -133,6 +133,41 @@ fn an_icon_is_a_body_with_a_notch() {
     assert!(!folder.path().join("out").exists());
 }
 
+/// Truth: the drawings. An open line that nothing stands for is told with its line, and does not pass where warnings
+/// count: one without a name, one with another name where a notch is made, and one that became a part of the body.
+/// Closed ones, and other names beside a crack, are told by the scene only.
+#[test]
+fn an_open_line_that_is_no_crack_is_told() {
+    let line = "<path d='M0 20H9' stroke='red' fill='none'/>";
+    let crack = "<path id='crack' d='M0 9H9'/>";
+    for (body, lines, words) in [
+        ("id='body'", line.to_owned(), &["<path> in line 3", "without id and label", "a notch", "the id `crack`"][..]),
+        ("id='body'", format!("{crack}{line}"), &["<path> in line 3", "not used"]),
+        (
+            "id='body'",
+            "<polyline id='a' points='0,20 5 20, 9,21'/><line/>".into(),
+            &["<polyline> in line 3", "`a`", "1 more"],
+        ),
+        ("", "<line x1='0' y1='20' x2='9' y2='20' stroke='red'/>".into(), &["<line> in line 3", "part of the body"]),
+        ("id='body'", format!("{crack}<path id='a' d='M0 20H9'/>"), &[]),
+        ("id='body'", "<path d='M0 20H9V30Z'/><path d='M0 20H9V30L0 20'/><polyline points='0,2 5,2 0,2'/>".into(), &[]),
+        ("", "<circle r='9'/>".into(), &[]),
+    ] {
+        let svg = "<svg xmlns='http://www.w3.org/2000/svg' width='40mm' viewBox='0 0 40 40'>";
+        let folder = folder(&format!("{svg}\n<rect {body} width='40' height='40'/>\n{lines}</svg>"));
+        let arguments = ["check", "plate.svg", "--material", "glass", "--log", "json"];
+        let (exit, _, told) = said(folder.path(), &arguments);
+        assert_eq!(exit, 0, "{told}");
+        let warnings: Vec<&str> =
+            told.lines().filter(|l| l.contains("\"warning\"") && l.contains("the open <")).collect();
+        assert_eq!(warnings.len(), usize::from(!words.is_empty()), "{told}");
+        words.iter().for_each(|word| assert!(warnings[0].contains(word), "{word}: {told}"));
+        if !words.is_empty() {
+            assert_eq!(said(folder.path(), &[&arguments[..], &["--strict"]].concat()).0, 2);
+        }
+    }
+}
+
 /// Truth: the drawings. Of two bodies with a crack each, both are pulled apart.
 #[test]
 fn each_cracked_body_is_pulled() {

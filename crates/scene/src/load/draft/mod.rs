@@ -6,18 +6,21 @@ mod pull;
 mod roles;
 mod sketch;
 mod text;
+mod unused_lines;
 
 use super::drawing::LoadedDrawing;
 use super::error::{DRAWING, LoadError, LoadErrorKind};
 use super::loaded::Loaded;
 use super::seating::Complaint;
 use crate::document::{Drawing, Origin};
+use crate::fault::Warning;
 use crate::load::nearest::nearest;
 use crate::materials::{material_preset, material_presets};
 use layout::Layout;
 use sha2::{Digest, Sha256};
 use sketch::Sketch;
 use std::path::{Path, PathBuf};
+use unused_lines::unused_lines;
 use usvg::roxmltree;
 
 /// What a drawing does not say.
@@ -34,20 +37,21 @@ pub struct DraftOptions {
 }
 
 /// A scene file made of a drawing.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Draft {
     text: String,
     drawing: PathBuf,
     reference: PathBuf,
+    warnings: Vec<Warning>,
 }
 
 /// What the last line of a draft begins with; the SHA-256 of all before it follows.
 const MARK: &str = "# Made anew from the drawing as long as nothing above is changed: ";
 
 impl Draft {
-    fn new(contents: String, drawing: &Path, reference: &str) -> Self {
+    fn new(contents: String, drawing: &Path, reference: &str, warnings: Vec<Warning>) -> Self {
         let mark = format!("\n{MARK}{}\n", digest(&contents));
-        Self { text: contents + &mark, drawing: drawing.into(), reference: reference.into() }
+        Self { text: contents + &mark, drawing: drawing.into(), reference: reference.into(), warnings }
     }
 
     /// The text of the scene file.
@@ -61,14 +65,17 @@ impl Draft {
         parts.is_some_and(|(above, mark)| mark.trim_end() == digest(above))
     }
 
-    /// Loads the scene as if its file were at `path`, which need not be written yet.
+    /// Loads the scene as if its file were at `path`, which need not be written yet. Its warnings tell of the drawing,
+    /// too.
     ///
     /// # Errors
     /// As [`load`](super::load).
     pub fn load(&self, path: &Path, overrides: &[String]) -> Result<Loaded, LoadError> {
         let folder = path.parent().unwrap_or(Path::new(""));
         let locate = |file: &Path| if file == self.reference { self.drawing.clone() } else { folder.join(file) };
-        super::load_text(path, self.text.clone(), overrides, locate)
+        let mut loaded = super::load_text(path, self.text.clone(), overrides, locate)?;
+        loaded.warnings.extend(self.warnings.iter().cloned());
+        Ok(loaded)
     }
 }
 
@@ -109,9 +116,11 @@ pub fn draft(drawing: &Path, reference: &str, options: &DraftOptions) -> Result<
     let parsing = roxmltree::ParsingOptions { allow_dtd: true, ..Default::default() };
     let document = roxmltree::Document::parse_with_options(&text, parsing)
         .map_err(|e| LoadError::file(drawing, format!("not valid SVG: {e}"), "save it again in an SVG editor"))?;
-    let sketch = Sketch::of(&roles::elements(&document), &loaded).map_err(told)?;
+    let elements = roles::elements(&document);
+    let sketch = Sketch::of(&elements, &loaded).map_err(told)?;
     let layout = Layout::of(&sketch, &loaded, &material).map_err(told)?;
-    Ok(Draft::new(text::scene_file(&sketch, &layout, reference, options), drawing, reference))
+    let warnings = unused_lines(&elements, &sketch, layout.notch.is_some()).into_iter().collect();
+    Ok(Draft::new(text::scene_file(&sketch, &layout, reference, options), drawing, reference, warnings))
 }
 
 fn scene_error(path: &Path, message: String, remedy: String) -> LoadError {

@@ -1,5 +1,6 @@
 //! What the elements of a drawing are for, by their names.
 
+use kurbo::{BezPath, ParamCurve, PathEl};
 use usvg::roxmltree::{Document, Node};
 
 /// What an element stands for.
@@ -31,6 +32,8 @@ pub(super) struct Named {
     /// Line of the drawing it stands in.
     pub(super) line: u32,
     pub(super) tag: String,
+    /// Whether it is a line with two ends, as a crack is.
+    pub(super) is_open: bool,
 }
 
 /// The elements that draw something, in the order of the drawing. A group that is called a body is one element, and so
@@ -59,7 +62,26 @@ fn collect(node: Node<'_, '_>, around: Option<Role>, found: &mut Vec<Named>) {
             name: names(&node).next().map(str::to_owned),
             line: node.document().text_pos_at(node.range().start).row,
             tag: tag.to_owned(),
+            is_open: is_open(&node),
         });
+    }
+}
+
+/// Whether an element draws lines that do not come back to where they begin.
+fn is_open(node: &Node<'_, '_>) -> bool {
+    match node.tag_name().name() {
+        "line" => true,
+        "polyline" => {
+            let numbers = node.attribute("points").unwrap_or_default().split(|c: char| c.is_whitespace() || c == ',');
+            let numbers: Vec<&str> = numbers.filter(|number| !number.is_empty()).collect();
+            numbers.len() > 3 && numbers[..2] != numbers[numbers.len() - 2..]
+        }
+        "path" => BezPath::from_svg(node.attribute("d").unwrap_or_default()).is_ok_and(|path| {
+            let closes = path.iter().any(|element| element == PathEl::ClosePath);
+            let ends = path.segments().next().zip(path.segments().last());
+            !closes && ends.is_some_and(|(first, last)| first.start() != last.end())
+        }),
+        _ => false,
     }
 }
 
