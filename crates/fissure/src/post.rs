@@ -11,14 +11,12 @@ use crate::report::Report;
 use crate::workers::{Work, stream};
 use crate::{take_path, threads};
 use fissure_files::{Folder, Lock};
-use fissure_scene::Take;
 use std::sync::{Mutex, PoisonError};
 
 /// Writes the meshes of a take.
 pub(crate) fn post(arguments: &PostArguments, interrupt: &Interrupt, report: &Report) -> Result<Exit, Failure> {
     let threads = threads::set(arguments.threads)?;
-    let path = take_path::take_in(&arguments.take)?;
-    let take = Take::open(&path)?;
+    let (path, take) = take_path::open(&arguments.take)?;
     let scene = fissure_scene::with_output(take.scene(), &arguments.overrides)?;
     must_show(&scene, &arguments.mesh)?;
     let numbers = take_path::chosen_frames(&take, &path, arguments.frames.as_ref())?;

@@ -34,8 +34,7 @@ pub(crate) fn draw(
     interrupt: &Interrupt,
     report: &Report,
 ) -> Result<Exit, Failure> {
-    let path = take_path::take_in(&arguments.run)?;
-    let take = Take::open(&path)?;
+    let (path, take) = take_path::open(&arguments.run)?;
     let numbers = take_path::chosen_frames(&take, &path, arguments.frames.as_ref())?;
     take.remarks()?.iter().for_each(|remark| report.warn(&remark.to_string()));
     let options = options(arguments);

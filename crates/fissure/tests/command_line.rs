@@ -582,6 +582,25 @@ fn a_folder_that_is_no_take_is_left_alone() {
     assert_eq!(names(&folder.path().join("out")), ["plate/plate.take/manifest.json"]);
 }
 
+/// Truth: the folders. What reads takes says of any other folder that it is none, and which ones around it hold one; it
+/// says nothing of writing.
+#[test]
+fn a_folder_without_a_take_is_told_with_what_to_name() {
+    let folder = workplace();
+    expect(&run(folder.path(), &["sim", "plate.toml"]), 0);
+    std::fs::create_dir_all(folder.path().join("out/plate/pictures")).unwrap();
+    std::fs::create_dir_all(folder.path().join("empty")).unwrap();
+    for command in ["preview", "post"] {
+        for (named, remedy) in
+            [("out", "`out/plate`"), ("out/plate/pictures", "`out/plate`"), ("empty", "`fissure run`")]
+        {
+            let told = expect(&run(folder.path(), &[command, named]), 3);
+            assert!(told.contains(&format!("the folder `{named}` is no take")) && told.contains(remedy), "{told}");
+            assert!(!told.contains("--output") && !told.contains("write"), "{told}");
+        }
+    }
+}
+
 #[test]
 fn a_take_of_another_version_is_named() {
     let folder = workplace();
@@ -768,7 +787,7 @@ const TABLE: &[Bad] = &[
         says: &["plate.toml/out", "--output"],
         ..FINE
     },
-    Bad { what: "no take", arguments: &["post", "no.take"], code: 3, says: &["no.take"], ..FINE },
+    Bad { what: "no take", arguments: &["post", "no.take"], code: 3, says: &["no folder `no.take`"], ..FINE },
     Bad { what: "a file for a take", arguments: &["post", "plate.toml"], code: 3, says: &["plate.toml"], ..FINE },
 ];
 
