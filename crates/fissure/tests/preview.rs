@@ -128,6 +128,31 @@ fn what_is_still_whole_is_shown_with_its_cracks_where_fragments_are_to_be_moved_
     assert!(rows > 60, "{rows} rows");
 }
 
+/// Truth: the scene. A cut at x = 1 m parts the plate, and its left half has a closed notch at x = .5 m, .3 m deep:
+/// shown apart, by much or little, the notch is a line in the middle of that half.
+#[test]
+fn closed_cracks_go_with_the_fragments_that_are_moved_apart() {
+    let cut = "\n[[crack]]\nname = \"cut\"\nline = [[1.0, -0.1], [1.0, 1.1]]\n";
+    for factor in [0.5, 0.1] {
+        let explode = format!("[output]\nexplode = {{ factor = {factor} }}");
+        let folder = folder_with("plate.toml", &(SCENE.replace("[output]", &explode) + cut));
+        let (code, _, told) = said(folder.path(), &["sim", "plate.toml", "--quiet"]);
+        assert_eq!(code, 0, "{told}");
+        preview(folder.path(), &["--frames", "1", "--pictures", "frames", "--size", "800"]);
+        let (width, _, pixels) = pixels(&folder.path().join("out/plate/preview/plate.0001.png"));
+        let is_red = |[r, g, b]: &[u8; 3]| i32::from(*r) > i32::from(*g).max(i32::from(*b)) + 40;
+        let in_the_middle = |row: &&[[u8; 3]]| {
+            let left = row.iter().position(|pixel| *pixel != row[0]);
+            let reds: Vec<usize> = (0..width).filter(|&x| is_red(&row[x])).collect();
+            let (Some(left), Some(&notch)) = (left, reds.first()) else { return false };
+            let cut = reds.iter().find(|&&x| x > notch + 20);
+            cut.is_some_and(|&cut| (cut - notch).abs_diff(notch - left) < 8)
+        };
+        let rows = pixels.chunks(width).filter(in_the_middle).count();
+        assert!(rows > 60, "{rows} rows at {factor}");
+    }
+}
+
 #[test]
 fn a_picture_of_others_is_kept_and_ours_are_replaced() {
     let folder = run();

@@ -24,10 +24,17 @@ use crate::widening::{Shift, Widening, widened};
 use fissure_scene::{CrackFrame, Cut, Fragments, Frame, OpeningSettings, Scene, Vector, Walls};
 use std::collections::BTreeMap;
 
+/// The bodies with their cracks.
+pub(crate) struct Cracked {
+    pub(crate) meshes: Vec<Mesh>,
+    /// How far fragments are shown from where they are, by body and number [m]; those that are where they are left out.
+    pub(crate) moves: BTreeMap<ObjectKey, Vector>,
+}
+
 /// One solid per fragment, by body and number, checked.
 ///
 /// Each is made of its own boundary alone, so that what touches or overlaps is never joined.
-pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result<Vec<Mesh>, PostError> {
+pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result<Cracked, PostError> {
     let mut fragments = Fragments::of_frame(frame);
     let mut cracks = SmoothCracks::new(scene, frame, &fragments, options.smoothing);
     let mut histories = if options.attributes.is_empty() { None } else { histories(frame) };
@@ -123,11 +130,10 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
     };
     meshes.extend(solids.opened(&opened)?);
     // What has been checked stays as it is: the grid reaches so far.
-    let apart = |(object, mesh): (ObjectKey, Mesh)| {
-        let offset = factor * shown_ways.get(&object).copied().unwrap_or_default();
-        mesh.moved(grids[object.0 as usize].nearest(offset))
-    };
-    Ok(meshes.into_iter().map(apart).collect())
+    let moved = |(object, way): (ObjectKey, Vector)| (object, grids[object.0 as usize].nearest(factor * way));
+    let moves: BTreeMap<ObjectKey, Vector> = shown_ways.into_iter().map(moved).collect();
+    let apart = |(object, mesh): (ObjectKey, Mesh)| mesh.moved(moves.get(&object).copied().unwrap_or_default());
+    Ok(Cracked { meshes: meshes.into_iter().map(apart).collect(), moves })
 }
 
 /// Whether cracks within fragments have walls even where they are closed: they are to be shown, or triangles do not

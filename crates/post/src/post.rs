@@ -1,7 +1,7 @@
 //! From a frame to meshes.
 
 use crate::colliders::collider_meshes;
-use crate::cracked::{cracked_meshes, whole_meshes};
+use crate::cracked::{Cracked, cracked_meshes, whole_meshes};
 use crate::error::PostError;
 use crate::faces::face_meshes;
 use crate::formats::Shot;
@@ -9,7 +9,8 @@ use crate::mesh::Mesh;
 use crate::options::PostOptions;
 use crate::particles::particle_meshes;
 use crate::provenance::Provenance;
-use fissure_scene::{Frame, Part, Scene, UpAxis};
+use fissure_scene::{Frame, Part, Scene, UpAxis, Vector};
+use std::collections::BTreeMap;
 
 /// The meshes of one frame, checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +25,8 @@ pub struct FrameMeshes {
     pub bevel: f64,
     /// How far walls of cracks are moved to be rough, at most [m]; 0: not at all.
     pub roughness: f64,
+    /// How far fragments are shown from where they are, by body and number [m]; those that are where they are left out.
+    pub moves: BTreeMap<(u32, u32), Vector>,
     /// Meshes of each part that was asked for, in that order.
     pub parts: Vec<(Part, Vec<Mesh>)>,
 }
@@ -53,10 +56,14 @@ pub fn post_frame(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result
     options.check()?;
     let inconsistent = |fault| PostError::Inconsistent { frame: frame.number, fault };
     frame.check_within(scene.bodies.len()).map_err(inconsistent)?;
-    let mut parts = Vec::with_capacity(options.parts.len());
+    let (mut parts, mut moved) = (Vec::with_capacity(options.parts.len()), BTreeMap::new());
     for &part in &options.parts {
         let meshes = match part {
-            Part::Cracked => cracked_meshes(scene, frame, options)?,
+            Part::Cracked => {
+                let Cracked { meshes, moves } = cracked_meshes(scene, frame, options)?;
+                moved = moves;
+                meshes
+            }
             Part::Body => whole_meshes(scene, frame, options)?,
             Part::Faces => face_meshes(scene, frame, options),
             Part::Collider => collider_meshes(scene, frame, options)?,
@@ -66,5 +73,5 @@ pub fn post_frame(scene: &Scene, frame: &Frame, options: &PostOptions) -> Result
     }
     let PostOptions { up, thickness, bevel, .. } = *options;
     let roughness = options.roughness.map_or(0.0, |roughness| roughness.amplitude);
-    Ok(FrameMeshes { provenance: Provenance::new(scene, frame), up, thickness, bevel, roughness, parts })
+    Ok(FrameMeshes { provenance: Provenance::new(scene, frame), up, thickness, bevel, roughness, moves: moved, parts })
 }

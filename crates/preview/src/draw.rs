@@ -48,14 +48,13 @@ pub fn draw_frame(
 ) -> Result<Picture, EncodeError> {
     let thickness = scene.output.thickness;
     let layout = Layout::new(survey, thickness, options, detail);
-    let of = |part: Part| meshes.parts.iter().filter(move |(known, _)| *known == part).flat_map(|(_, meshes)| meshes);
-    let solids: Vec<&Mesh> = of(Part::Cracked).collect();
-    let colliders: Vec<&Mesh> = of(Part::Collider).collect();
+    let solids: Vec<&Mesh> = of_part(meshes, Part::Cracked).collect();
+    let colliders: Vec<&Mesh> = of_part(meshes, Part::Collider).collect();
     let field = CapField::new(frame, scene.particle_spacing, options.coloring, survey.scale());
     let field = field.filter(|_| is_in_place(scene, frame));
     let mut picture = surfaces(&solids, &colliders, field.as_ref(), &layout, options)?;
     let z = 0.5 * thickness;
-    lines(&mut picture, scene, frame, &solids, &layout, options, z);
+    lines(&mut picture, scene, frame, meshes, &layout, options, z);
     let cover = |picture: &mut Picture, from: f64, to: f64| {
         let strip = tiny_skia::Rect::from_ltrb(0.0, from as f32, layout.width as f32, to as f32);
         if let Some(strip) = strip {
@@ -76,6 +75,10 @@ pub fn draw_frame(
         Detail::Tile => legend::caption(&mut picture, frame, &layout, options),
     }
     Ok(picture)
+}
+
+fn of_part(meshes: &FrameMeshes, part: Part) -> impl Iterator<Item = &Mesh> {
+    meshes.parts.iter().filter(move |(known, _)| *known == part).flat_map(|(_, meshes)| meshes)
 }
 
 /// Whether the meshes lie where the material is, so that what the frame tells can be drawn over them: fragments only
@@ -147,14 +150,14 @@ fn lines(
     picture: &mut Picture,
     scene: &Scene,
     frame: &Frame,
-    solids: &[&Mesh],
+    meshes: &FrameMeshes,
     layout: &Layout,
     options: &PreviewOptions,
     z: f64,
 ) {
     let (projection, theme) = (&layout.projection, options.theme);
     let (mut outer, mut cracks) = (PathBuilder::new(), PathBuilder::new());
-    for rim in solids.iter().flat_map(|mesh| rims(mesh)) {
+    for rim in of_part(meshes, Part::Cracked).flat_map(rims) {
         let path = if rim.slot == Slot::Inside { &mut cracks } else { &mut outer };
         let [[x, y, _], [to_x, to_y, _]] = rim.ends.map(|end| projection.pixel(end));
         path.move_to(x as f32, y as f32);
@@ -167,6 +170,8 @@ fn lines(
         if scene.take.particles == HeldParticles::Full {
             inclusions = inclusions::edges(scene, frame, z, projection);
         }
+    } else {
+        crack_lines::add_moved(&mut cracks, frame, &meshes.moves, z, projection);
     }
     let width = (0.09 * layout.letters) as f32;
     let drawn = [(outer.finish(), theme.edge()), (inclusions, theme.inclusion()), (cracks.finish(), theme.crack())];

@@ -184,8 +184,15 @@ mod tests {
         };
         let parts =
             vec![(Part::Cracked, vec![mesh(), mesh()]), (Part::Faces, vec![mesh()]), (Part::Collider, vec![mesh()])];
-        let meshes =
-            FrameMeshes { provenance, up: fissure_scene::UpAxis::Z, thickness: 0.1, bevel: 0.0, roughness: 0.0, parts };
+        let meshes = FrameMeshes {
+            provenance,
+            up: fissure_scene::UpAxis::Z,
+            thickness: 0.1,
+            bevel: 0.0,
+            roughness: 0.0,
+            moves: std::collections::BTreeMap::new(),
+            parts,
+        };
         let packed = PackedFrame::new(&Frame { number: 3, time: 0.5, ..Frame::default() }, &meshes).unwrap();
         let mut plain = Vec::new();
         DeflateDecoder::new(packed.bytes.as_slice()).read_to_end(&mut plain).unwrap();
