@@ -69,10 +69,20 @@ impl RoughWalls {
         if room <= 0.0 {
             return;
         }
-        let near = self.near(room, stay);
-        let all = self.corners.iter_mut().map(Option::as_mut).chain(self.between.iter_mut().flatten().map(Some));
-        for line in all.zip(near).filter_map(|(line, near)| line.filter(|_| near)) {
-            line.rows.iter_mut().for_each(|(place, _)| *place = line.straight);
+        // What goes straight may come near to what has not.
+        loop {
+            let near = self.near(room, stay);
+            let all = self.corners.iter_mut().map(Option::as_mut).chain(self.between.iter_mut().flatten().map(Some));
+            let mut is_done = true;
+            for line in all.zip(near).filter_map(|(line, near)| line.filter(|_| near)) {
+                for (place, _) in line.rows.iter_mut().filter(|(place, _)| *place != line.straight) {
+                    *place = line.straight;
+                    is_done = false;
+                }
+            }
+            if is_done {
+                break;
+            }
         }
         if stay {
             return;
@@ -200,4 +210,38 @@ impl Places<'_> {
 
 fn length(edge: &Edge) -> f64 {
     ((edge.b.x - edge.a.x) as f64).hypot((edge.b.y - edge.a.y) as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Truth: by brute force. Columns that stand apart where they are straight are apart
+        /// afterwards in every row, also from what went straight because of others.
+        #[test]
+        fn columns_that_go_straight_come_near_to_none(
+            steps in proptest::collection::vec((-0.9..0.9_f64, -0.9..0.9_f64, -0.9..0.9_f64), 3..12), stay: bool,
+        ) {
+            let line = |(k, (low, middle, high)): (usize, &(f64, f64, f64))| {
+                let straight = Point::new(1.01 * k as f64, 0.0);
+                let row = |(z, shift): (usize, &f64)| (straight + *shift * Vector::x(), z as f64);
+                let rows = [*low, *middle, *high].iter().enumerate().map(row).collect();
+                RoughLine { carried: Carried::within(straight, Vector::zeros()), straight, rows }
+            };
+            let corners: Vec<Option<RoughLine>> = steps.iter().enumerate().map(line).map(Some).collect();
+            let between = corners.iter().map(|_| Vec::new()).collect();
+            let mut walls = RoughWalls { corners, between };
+            walls.leave_room(1.0, stay);
+            let lines: Vec<&RoughLine> = walls.corners.iter().flatten().collect();
+            for (k, line) in lines.iter().enumerate() {
+                for other in &lines[k + 1..] {
+                    for ((p, _), (q, _)) in line.rows.iter().zip(&other.rows) {
+                        prop_assert!((p - q).norm() >= 1.0, "{} {}", p, q);
+                    }
+                }
+            }
+        }
+    }
 }
