@@ -1,4 +1,4 @@
-//! Places of the material beside a particle, where edges are held.
+//! Places of the material beside a particle, where edges are held or pulled at.
 
 use super::lattice::Lattice;
 use super::points::Points;
@@ -15,20 +15,36 @@ pub(super) struct Beside {
 }
 
 impl Beside {
+    /// The place of a particle.
+    pub(super) fn at(particle: u32) -> Self {
+        Self { particle, offset: Vector::zeros() }
+    }
+
+    /// Its particle.
+    pub(super) fn particle(&self) -> usize {
+        self.particle as usize
+    }
+
+    /// The way from the particle to where the place is now, F (X − X_p) [m], no longer than `cell_size` [m], be the
+    /// material beyond it never so much torn.
+    pub(super) fn way(&self, points: &Points, cell_size: f64) -> Vector {
+        let way = (Matrix::identity() + points.total_gradient(self.particle())) * self.offset;
+        way.cap_magnitude(cell_size)
+    }
+
     /// A place at rest beside the nearest particle of `layer`; none of no particles.
     pub(super) fn nearest(setup: &Setup, layer: &[u32], place: Point) -> Option<Self> {
         let particle = nearest(&setup.particles, layer.iter().copied(), place)?;
         Some(Self { particle, offset: place - setup.particles.rest[particle as usize] })
     }
 
-    /// Calls `visit` with (field, w + ∇w · r), r = F (X − X_p) the way from the particle to where the place is now: so
-    /// weighted, velocities of the fields add up to the one that the place has as the particle moves and deforms. Not
-    /// longer than a cell, be the material beyond it never so much torn.
+    /// Calls `visit` with (field, w + ∇w · r), r the way from the particle: so weighted, velocities of fields add up
+    /// to the one that the place has as the particle moves and deforms, and a force there turns the material as at the
+    /// place.
     pub(super) fn for_each_entry(&self, points: &Points, lattice: &Lattice, mut visit: impl FnMut(usize, f64)) {
         let p = self.particle as usize;
         let place = points.point[p].position;
-        let way = (Matrix::identity() + points.total_gradient(p)) * self.offset;
-        let way = way.cap_magnitude(lattice.grid.cell_size);
+        let way = self.way(points, lattice.grid.cell_size);
         if let Some(entries) = lattice.stencils.of(p) {
             entries.iter().for_each(|e| visit(e.field as usize, e.weight + e.gradient.dot(&way)));
             return;

@@ -1,5 +1,6 @@
 //! Loads as forces on particles.
 
+use super::beside::Beside;
 use super::faces::Faces;
 use super::gather::FromGrid;
 use super::lattice::Lattice;
@@ -8,20 +9,21 @@ use super::points::Points;
 use super::pressure::Pressure;
 use super::setup::Setup;
 use crate::SimulationError;
-use crate::boundary::loads::{ForcePlace, forces_of_load, nearest};
+use crate::boundary::loads::{ForcePlace, forces_of_load};
 use crate::crack::cracks::Cracks;
 use fissure_scene::{Load, LoadKind, Vector};
 
 /// The forces of all loads.
 #[derive(Debug)]
 pub(super) struct Loads {
-    /// Per load: (particle, force at a curve factor of 1 [N/m]); none of pressures.
-    forces: Vec<Vec<(u32, Vector)>>,
+    /// Per load: (where, force at a curve factor of 1 [N/m]); none of pressures.
+    forces: Vec<Vec<(Beside, Vector)>>,
     pressures: Vec<Pressure>,
 }
 
 impl Loads {
-    /// The forces of the loads of a scene; those along outlines act on the nearest of the selected particles.
+    /// The forces of the loads of a scene; those along outlines act there, beside the nearest
+    /// of the selected particles.
     ///
     /// # Errors
     /// When a load selects nothing.
@@ -32,12 +34,12 @@ impl Loads {
                 return Ok(Vec::new());
             }
             let layer = particles.select(scene, &load.selection);
-            let particle = |place| match place {
-                ForcePlace::Particle(p) => Some(p),
-                ForcePlace::Outline { place, .. } => nearest(particles, layer.iter().copied(), place),
+            let beside = |place| match place {
+                ForcePlace::Particle(p) => Some(Beside::at(p)),
+                ForcePlace::Outline { place, .. } => Beside::nearest(setup, &layer, place),
             };
             let forces = forces_of_load(scene, particles, index)?.into_iter();
-            let forces: Vec<(u32, Vector)> = forces.filter_map(|at| Some((particle(at.place)?, at.force))).collect();
+            let forces: Vec<(Beside, Vector)> = forces.filter_map(|at| Some((beside(at.place)?, at.force))).collect();
             if forces.is_empty() {
                 return Err(particles.no_particle("load", index, &load.selection).into());
             }
@@ -82,9 +84,9 @@ impl Loads {
             if factor == 0.0 {
                 continue;
             }
-            for &(p, f) in forces {
+            for &(beside, f) in forces {
                 let f = f * factor;
-                lattice.for_each_entry(p as usize, points.point[p as usize].position, |field, w| {
+                beside.for_each_entry(points, lattice, |field, w| {
                     force[0][field] += w * f.x;
                     force[1][field] += w * f.y;
                 });
@@ -95,12 +97,12 @@ impl Loads {
     /// Power of the forces at the time `middle` [s]: material moves by Σ v_i w_ip Δt, so that Σ f·v Δt is their exact
     /// work [W/m].
     pub(super) fn power(&self, points: &Points, faces: &Faces, from: &FromGrid<'_>, middle: f64) -> f64 {
-        let mut power = 0.0;
+        let (mut power, h) = (0.0, from.setup.scene.cell_size);
         for (load, forces) in from.setup.scene.loads.iter().zip(&self.forces) {
             let factor = load.curve.value(middle);
-            for &(p, f) in forces {
-                let gathered = from.gather_one(p as usize, &points.point[p as usize]);
-                power += factor * f.dot(&gathered.velocity);
+            for (beside, f) in forces {
+                let gathered = from.gather_one(beside.particle(), &points.point[beside.particle()]);
+                power += factor * f.dot(&(gathered.velocity + gathered.gradient * beside.way(points, h)));
             }
         }
         for pressure in &self.pressures {

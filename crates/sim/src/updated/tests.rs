@@ -55,6 +55,34 @@ pub(super) fn waving(lattice: &Lattice) -> Nodes {
     Nodes { before, after, smoothed, gain, ..Nodes::default() }
 }
 
+/// Truth: statics. Shear along all four edges of a plate, whose edges lie anywhere between particles, turns nothing.
+#[test]
+fn tractions_that_balance_turn_nothing() {
+    let (traction, width, height) = (3.0, 1.33, 0.91);
+    let mut scene = free_body(rectangle([0.02, 0.05], [0.02 + width, 0.05 + height]), 0.1);
+    scene.solver.kernel = Kernel::Quadratic;
+    scene.solver.transfer = Transfer::Apic;
+    let along = [
+        (BoxSide::Top, [traction, 0.0]),
+        (BoxSide::Bottom, [-traction, 0.0]),
+        (BoxSide::Right, [0.0, traction]),
+        (BoxSide::Left, [0.0, -traction]),
+    ];
+    for (side, [x, y]) in along {
+        scene.loads.push(Load {
+            selection: Selection::Edge { side, bodies: None },
+            kind: LoadKind::Traction(Vector::new(x, y)),
+            curve: always(),
+        });
+    }
+    let mut run = Run::new(&scene);
+    let time_step = 0.2 * run.solver.stable_time_step();
+    run.steps(4, time_step);
+    let given = traction * width * height * 4.0 * time_step;
+    assert!(run.momentum().norm() < 1e-12 * given && run.angular_momentum().abs() < 1e-3 * given);
+    assert!(run.solver.energies().kinetic > 0.0);
+}
+
 /// A body without cracks whose particles are off their lattice, move at random and are strained, on the grid of its
 /// next step.
 pub(super) fn shaken(kernel: Kernel) -> (Setup, Points, Lattice) {
