@@ -102,7 +102,8 @@ pub struct ContactKeys {
     /// all. Total formulation. Default: 1.
     #[schemars(transform = UNIT.bounds())]
     pub restitution: f64,
-    /// The same of what has broken off a body. Default: 0.2.
+    /// The part of the speed, with which their elasticity throws them back, that pieces keep when they land that have
+    /// broken off a body. Default: 0.2.
     #[schemars(transform = UNIT.bounds())]
     pub fragment_restitution: f64,
 }
