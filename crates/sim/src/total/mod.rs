@@ -323,7 +323,9 @@ impl Solver for Total {
         }
         if self.rebound.is_on() {
             let Self { lattice, motion, probes, supports, touching, rebound, .. } = self;
-            touching.each_push(probes, &mut |push| rebound.add(push));
+            if touches {
+                touching.each_push(probes, &mut |push| rebound.add(push));
+            }
             rebound.end_step(lattice, supports.held(), motion);
         }
         self.external_work += self.touching.keep(kick, &self.motion);

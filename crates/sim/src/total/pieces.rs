@@ -116,7 +116,9 @@ impl Piece {
             inertia += m * arm.norm_squared();
             spin += m * arm.perp(&(motion.velocity(field) - velocity));
         }
-        RigidMotion { mass, inertia, centre, velocity, turning: spin / inertia }
+        // What has only one field has no size to turn by.
+        let turning = if inertia > 0.0 { spin / inertia } else { 0.0 };
+        RigidMotion { mass, inertia, centre, velocity, turning }
     }
 
     /// Changes the velocities of all its fields by what two rigid motions about one centre differ by.
@@ -145,7 +147,8 @@ impl RigidMotion {
 
     /// The motion after an impulse per unit thickness [N s/m] at `point`.
     pub(super) fn pushed(self, impulse: Vector, point: Vector) -> Self {
-        let turning = self.turning + (point - self.centre).perp(&impulse) / self.inertia;
+        let added = if self.inertia > 0.0 { (point - self.centre).perp(&impulse) / self.inertia } else { 0.0 };
+        let turning = self.turning + added;
         Self { velocity: self.velocity + impulse / self.mass, turning, ..self }
     }
 }
