@@ -7,7 +7,7 @@ use crate::snap::GridPoint;
 use crate::source::Carried;
 use crate::triangulate::Cap;
 use fissure_scene::{Cut, Frame, Point, Vector};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::ops::Range;
 
 /// Width of a bin, in particle spacings: the nearest particle of most places lies in their bin or in one beside it,
@@ -20,7 +20,7 @@ pub(crate) struct Interior<'a> {
     frame: &'a Frame,
     /// By where they are now.
     now: Bins,
-    /// By where they are at rest, if that is needed.
+    /// By where they are at rest, if that is needed, without strays.
     rest: Bins,
     /// What lies between places at rest, if that is known.
     sight: Option<Sight>,
@@ -49,7 +49,7 @@ impl<'a> Interior<'a> {
     /// Those of body `body`, to be found as `cut` needs them; `spacing` [m] is their distance at rest.
     pub(crate) fn new(frame: &'a Frame, body: u32, spacing: f64, cut: Cut) -> Self {
         let bins = |places| Bins::new(frame, body, places, BIN * spacing);
-        let rest = if cut == Cut::Rest { bins(&frame.particles.rest) } else { Bins::default() };
+        let rest = if cut == Cut::Rest { bins(&frame.particles.rest).without_strays() } else { Bins::default() };
         Self { frame, now: bins(&frame.particles.position), rest, sight: None }
     }
 
@@ -125,10 +125,16 @@ impl Bins {
     /// The particles of a body in bins of some `width` [m], each by its place among `places`.
     fn new(frame: &Frame, body: u32, places: &[Point], width: f64) -> Self {
         let particles = &frame.particles;
-        let of_body: Vec<usize> = (0..places.len()).filter(|&p| particles.body[p] == body).collect();
+        let of_body = (0..places.len()).filter(|&p| particles.body[p] == body);
+        let binned = |p: usize| Binned { particle: p as u32, piece: particles.piece[p], place: places[p] };
+        Self::of(of_body.map(binned).collect(), width)
+    }
+
+    /// Some particles, in their order in each bin.
+    fn of(particles: Vec<Binned>, width: f64) -> Self {
         let mut ranges = FxHashMap::<[i32; 2], Range<usize>>::default();
-        for &p in &of_body {
-            ranges.entry(bin_of(places[p], width)).or_default().end += 1;
+        for one in &particles {
+            ranges.entry(bin_of(one.place, width)).or_default().end += 1;
         }
         let mut begin = 0;
         for range in ranges.values_mut() {
@@ -136,15 +142,30 @@ impl Bins {
             *range = begin..begin;
             begin += count;
         }
-        let nothing = Binned { particle: 0, piece: 0, place: Point::origin() };
-        let mut sorted = vec![nothing; of_body.len()];
-        for p in of_body {
-            if let Some(range) = ranges.get_mut(&bin_of(places[p], width)) {
-                sorted[range.end] = Binned { particle: p as u32, piece: particles.piece[p], place: places[p] };
+        let mut sorted = particles.clone();
+        for one in particles {
+            if let Some(range) = ranges.get_mut(&bin_of(one.place, width)) {
+                sorted[range.end] = one;
                 range.end += 1;
             }
         }
         Self { width, particles: sorted, ranges }
+    }
+
+    /// Those that have another one of their fragment within a bin's width, of fragments with any; of others all. One in
+    /// a needle far from the rest of its fragment goes as what lies beside the needle does.
+    fn without_strays(self) -> Self {
+        let has_company = |one: &Binned| {
+            let mut others = self.around(one.place, one.piece).filter(|other| other.particle != one.particle);
+            others.any(|other| (other.place - one.place).norm_squared() < self.width.powi(2))
+        };
+        let (kept, strays): (Vec<Binned>, Vec<Binned>) = self.particles.iter().partition(|one| has_company(one));
+        if strays.is_empty() {
+            return self;
+        }
+        let with_company: FxHashSet<u32> = kept.iter().map(|one| one.piece).collect();
+        let left = strays.into_iter().filter(|one| !with_company.contains(&one.piece));
+        Self::of(kept.into_iter().chain(left).collect(), self.width)
     }
 
     /// The particle of fragment `piece` nearest to `place`, of those in its bin and in those around it; of several the
@@ -173,4 +194,39 @@ impl Bins {
 /// Column and row of the bin that holds `place`; far away ones are all in the last.
 fn bin_of(place: Point, width: f64) -> [i32; 2] {
     [place.x, place.y].map(|x| (x / width).floor() as i32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fissure_scene::{Matrix, ParticleFrame};
+
+    /// Truth: by hand. A block that has turned, and far out in a needle of it one particle, which what lies beside the
+    /// needle has carried off: the needle goes on as a straight part of the block. What is nothing but such particles
+    /// goes as they do.
+    #[test]
+    fn needles_go_with_their_fragment_not_with_a_stray_particle() {
+        let block = (0..16).map(|k| Point::new(f64::from(k % 4), f64::from(k / 4)));
+        let rest: Vec<Point> = block.chain([Point::new(-3.5, 0.0), Point::new(50.0, 0.0)]).collect();
+        let (sin, cos) = 0.5_f64.sin_cos();
+        let turned = Matrix::new(cos, -sin, sin, cos);
+        let mut particles = ParticleFrame {
+            body: vec![0; 18],
+            piece: vec![0; 18],
+            position: rest.iter().map(|at| turned * at).collect(),
+            velocity: vec![Vector::zeros(); 18],
+            deformation_gradient: vec![turned; 18],
+            rest,
+            ..ParticleFrame::default()
+        };
+        particles.position[16] = Point::new(-3.5, 7.0);
+        particles.piece[17] = 1;
+        let frame = Frame { particles, ..Frame::default() };
+        let interior = Interior::new(&frame, 0, 1.0, Cut::Rest);
+        let tip = Point::new(-4.0, 0.0);
+        assert_eq!(interior.moved(tip, tip, 0), None);
+        assert!((interior.carried(tip, 0).unwrap_or_default() - turned * tip).norm() < 1e-12);
+        let alone = Point::new(50.5, 0.0);
+        assert!((interior.carried(alone, 1).unwrap_or_default() - turned * alone).norm() < 1e-12);
+    }
 }
