@@ -4,6 +4,7 @@ use crate::boolean::{Edge, Shape, SourceIndex, common, covered_twice, twice_area
 use crate::slivers::is_sliver;
 use crate::snap::{Grid, GridPoint};
 use crate::source::SourceEdge;
+use std::collections::BTreeSet;
 
 /// What the boundary of a fragment encloses.
 #[derive(Debug, Clone)]
@@ -54,6 +55,18 @@ impl Lens {
     }
 }
 
+/// An overlap of two fragments that has another form.
+pub(crate) struct Tangle {
+    pub(crate) pair: [usize; 2],
+    pub(crate) region: Shape,
+}
+
+/// Where fragments lie in each other.
+pub(crate) struct Overlaps {
+    pub(crate) lenses: Vec<Lens>,
+    pub(crate) tangles: Vec<Tangle>,
+}
+
 impl Lattice {
     pub(crate) fn new(fragments: &[Enclosed]) -> Self {
         let step = fragments.iter().map(|f| f.grid.step).fold(f64::INFINITY, f64::min);
@@ -80,11 +93,35 @@ impl Lattice {
     }
 
     /// All places that are in two fragments or more.
-    pub(crate) fn regions(&self, fragments: &[Enclosed]) -> Vec<Shape> {
+    fn regions(&self, fragments: &[Enclosed]) -> Vec<Shape> {
         if fragments.len() < 2 {
             return Vec::new();
         }
         covered_twice((0..fragments.len()).flat_map(|i| self.edges(i, fragments)))
+    }
+
+    /// Where fragments lie in each other, but for overlaps wider than `widest` [m] in the mean. Where some have another
+    /// form than that of a lens all of the pairs around are looked at one by one, as more than two may lie there.
+    pub(crate) fn overlaps(&self, fragments: &[Enclosed], widest: f64) -> Overlaps {
+        let shared = |regions: Vec<Shape>| regions.into_iter().filter(|region| self.is_shared(region, widest));
+        let mut found = Overlaps { lenses: Vec::new(), tangles: Vec::new() };
+        let mut tangled = BTreeSet::new();
+        for region in shared(self.regions(fragments)) {
+            match self.lens(&region) {
+                Some(lens) => found.lenses.push(lens),
+                None => tangled.extend(self.pairs_near(&region, fragments)),
+            }
+        }
+        found.lenses.retain(|lens| !tangled.contains(&lens.fragments()));
+        for pair in tangled {
+            for region in shared(self.common(pair, fragments)) {
+                match self.lens(&region) {
+                    Some(lens) => found.lenses.push(lens),
+                    None => found.tangles.push(Tangle { pair, region }),
+                }
+            }
+        }
+        found
     }
 
     /// What two fragments have in common.
@@ -93,14 +130,14 @@ impl Lattice {
     }
 
     /// Whether an overlap is more than rounding and not wider than `widest` [m].
-    pub(crate) fn is_shared(&self, shape: &Shape, widest: f64) -> bool {
+    fn is_shared(&self, shape: &Shape, widest: f64) -> bool {
         let area = 0.5 * shape.iter().map(|contour| twice_area(contour)).sum::<i128>() as f64;
         let half: f64 = 0.5 * shape.iter().flatten().map(length).sum::<f64>();
         !shape.iter().all(|contour| is_sliver(contour)) && area * self.step <= widest * half
     }
 
     /// The two sides of an overlap; none where it has another form.
-    pub(crate) fn lens(&self, shape: &Shape) -> Option<Lens> {
+    fn lens(&self, shape: &Shape) -> Option<Lens> {
         let [contour] = shape.as_slice() else { return None };
         let count = contour.len();
         let owner = |i: usize| self.owner(&contour[i % count]);
@@ -114,7 +151,7 @@ impl Lattice {
     }
 
     /// All pairs of fragments around a region.
-    pub(crate) fn pairs_near(&self, region: &Shape, fragments: &[Enclosed]) -> Vec<[usize; 2]> {
+    fn pairs_near(&self, region: &Shape, fragments: &[Enclosed]) -> Vec<[usize; 2]> {
         let [low, high] = bounds(region.iter().flatten().copied());
         let is_near = |&i: &usize| {
             let [from, to] = bounds(self.edges(i, fragments));

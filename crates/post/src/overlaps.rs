@@ -11,12 +11,11 @@
 //! place in it the two parts together wind once, so one of them at least contains it.
 
 use crate::boolean::{Contour, Edge, Operation, Shape, SourceIndex, combine, twice_area};
-use crate::lattice::{Chain, Enclosed, Lattice, Lens, rounded};
+use crate::lattice::{Chain, Enclosed, Lattice, Lens, Overlaps, Tangle, rounded};
 use crate::slivers::{is_narrower, without_slivers};
 use crate::snap::GridPoint;
 use crate::source::{Carried, SourceEdge};
 use fissure_scene::{Point, Vector};
-use std::collections::BTreeSet;
 
 /// How far what is taken off a fragment reaches beyond its boundary, in grid steps: more than rounding.
 const OUTWARDS: f64 = 4.0;
@@ -32,28 +31,11 @@ pub(crate) fn share_out_overlaps(
     material: impl Fn(&Enclosed, Point) -> Option<(Point, Vector)>,
 ) {
     let lattice = Lattice::new(fragments);
-    let mut regions = lattice.regions(fragments);
-    regions.retain(|shape| lattice.is_shared(shape, widest));
+    let Overlaps { lenses, tangles } = lattice.overlaps(fragments, widest);
     let mut losses: Vec<Vec<Contour>> = vec![Vec::new(); fragments.len()];
-    let mut tangled = BTreeSet::new();
-    let mut lenses = Vec::new();
-    for region in regions {
-        match lattice.lens(&region) {
-            Some(lens) => lenses.push(lens),
-            None => tangled.extend(lattice.pairs_near(&region, fragments)),
-        }
-    }
-    lenses.retain(|lens| !tangled.contains(&lens.fragments()));
-    for pair in tangled {
-        for region in lattice.common(pair, fragments).into_iter().filter(|shape| lattice.is_shared(shape, widest)) {
-            match lattice.lens(&region) {
-                Some(lens) => lenses.push(lens),
-                None => {
-                    let (larger, contours) = lattice.given_up(pair, &region, fragments, &material);
-                    losses[larger].extend(contours);
-                }
-            }
-        }
+    for Tangle { pair, region } in tangles {
+        let (larger, contours) = lattice.given_up(pair, &region, fragments, &material);
+        losses[larger].extend(contours);
     }
     for lens in lenses {
         for (fragment, loss) in lattice.halves(&lens, fragments) {

@@ -10,10 +10,9 @@
 //! overlap of a small part of the size, and goes in the next round.
 
 use crate::boolean::{Contour, Edge, Shape, twice_area};
-use crate::lattice::{Chain, Enclosed, Lattice, Lens, rounded};
+use crate::lattice::{Chain, Enclosed, Lattice, Lens, Overlaps, Tangle, rounded};
 use crate::snap::GridPoint;
 use rustc_hash::{FxHashMap, FxHashSet};
-use std::collections::BTreeSet;
 
 /// Part of a fragment within another one from which on it goes as a whole.
 const MOST_OF_CRUMB: f64 = 0.5;
@@ -70,25 +69,8 @@ pub(crate) fn ways_apart(fragments: &[Enclosed], held: &[Held], widest: f64) -> 
         held,
         apart: Apart { ways: vec![Ways::default(); fragments.len()], meets: vec![false; fragments.len()] },
     };
-    let mut tangled = BTreeSet::new();
-    let mut lenses = Vec::new();
-    for region in lattice.regions(fragments) {
-        if lattice.is_shared(&region, widest) {
-            match lattice.lens(&region) {
-                Some(lens) => lenses.push(lens),
-                None => tangled.extend(lattice.pairs_near(&region, fragments)),
-            }
-        }
-    }
-    lenses.retain(|lens| !tangled.contains(&lens.fragments()));
-    for pair in tangled {
-        for region in lattice.common(pair, fragments).into_iter().filter(|shape| lattice.is_shared(shape, widest)) {
-            match lattice.lens(&region) {
-                Some(lens) => lenses.push(lens),
-                None => found.tangled(pair, &region),
-            }
-        }
-    }
+    let Overlaps { lenses, tangles } = lattice.overlaps(fragments, widest);
+    tangles.iter().for_each(|tangle| found.tangled(tangle));
     lenses.iter().for_each(|lens| found.lens(lens));
     found.apart
 }
@@ -164,7 +146,7 @@ impl Found<'_> {
     }
 
     /// Sends the corners around an overlap of another form towards the nearest place on the other boundary around it.
-    fn tangled(&mut self, pair: [usize; 2], region: &Shape) {
+    fn tangled(&mut self, &Tangle { pair, ref region }: &Tangle) {
         pair.iter().for_each(|&fragment| self.apart.meets[fragment] = true);
         if self.crumb(pair, region) {
             return;
