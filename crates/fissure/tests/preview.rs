@@ -129,9 +129,9 @@ fn what_is_still_whole_is_shown_with_its_cracks_where_fragments_are_to_be_moved_
 }
 
 /// Truth: the scene. A cut at x = 1 m parts the plate, and its left half has a closed notch at x = .5 m, .3 m deep:
-/// shown apart, by much or little, the notch is a line in the middle of that half.
+/// shown apart, by much or little, the notch is a line in the middle of that half, with its tip marked.
 #[test]
-fn closed_cracks_go_with_the_fragments_that_are_moved_apart() {
+fn closed_cracks_and_tips_go_with_the_fragments_that_are_moved_apart() {
     let cut = "\n[[crack]]\nname = \"cut\"\nline = [[1.0, -0.1], [1.0, 1.1]]\n";
     for factor in [0.5, 0.1] {
         let explode = format!("[output]\nexplode = {{ factor = {factor} }}");
@@ -150,6 +150,16 @@ fn closed_cracks_go_with_the_fragments_that_are_moved_apart() {
         };
         let rows = pixels.chunks(width).filter(in_the_middle).count();
         assert!(rows > 60, "{rows} rows at {factor}");
+        // The tip of the notch is marked at its lower end.
+        let (last, row) = pixels.chunks(width).enumerate().rfind(|(_, row)| in_the_middle(row)).unwrap();
+        let notch = (0..width).find(|&x| is_red(&row[x])).unwrap();
+        let is_tip = |x: usize, y: usize| pixels[y * width + x] == [200, 20, 40];
+        let marks: Vec<(usize, usize)> = (last - 20..last + 20)
+            .flat_map(|y| (notch - 20..notch + 20).map(move |x| (x, y)))
+            .filter(|&(x, y)| is_tip(x, y))
+            .collect();
+        let mean = marks.iter().map(|mark| mark.0 as f64).sum::<f64>() / marks.len() as f64;
+        assert!(marks.len() > 20 && (mean - notch as f64).abs() < 4.0, "{mean} of {} at {factor}", marks.len());
     }
 }
 

@@ -65,9 +65,12 @@ pub fn draw_frame(
     match detail {
         Detail::Full => {
             cover(&mut picture, f64::from(layout.height) - layout.footer, f64::from(layout.height));
-            let has_tips = is_in_place(scene, frame) && tip_marks::are_labelled(&frame.tips);
+            let has_tips = tip_marks::are_labelled(&frame.tips);
             if is_in_place(scene, frame) {
                 tip_marks::draw(&mut picture, &frame.tips, z, &layout, options.theme);
+            } else {
+                let tips = tip_marks::moved(frame, &meshes.moves);
+                tip_marks::draw(&mut picture, &tips, z, &layout, options.theme);
             }
             legend::header(&mut picture, scene, frame, &layout, options);
             legend::footer(&mut picture, survey, &layout, options, Some(solids.len()), has_tips);

@@ -4,7 +4,8 @@ use crate::layout::Layout;
 use crate::lettering::{self, Anchor};
 use crate::picture::{Picture, paint};
 use crate::theme::Theme;
-use fissure_scene::TipRecord;
+use fissure_scene::{BoundaryEdge, End, Fragments, Frame, Line, TipRecord, Vector};
+use std::collections::BTreeMap;
 use tiny_skia::{FillRule, PathBuilder, Transform};
 
 /// Tips that have a number beside them: those that carry most.
@@ -43,6 +44,29 @@ pub(crate) fn draw(picture: &mut Picture, tips: &[TipRecord], z: f64, layout: &L
             taken.push(label);
         }
     }
+}
+
+/// The tips of a frame where `moves` take the fragments that they are in, known by body and number [m].
+pub(crate) fn moved(frame: &Frame, moves: &BTreeMap<(u32, u32), Vector>) -> Vec<TipRecord> {
+    let fragments = Fragments::of_frame(frame);
+    let numbers = fragments.numbers(&frame.particles);
+    let way = |tip: &TipRecord| {
+        let crack = frame.cracks.iter().position(|crack| crack.crack == tip.crack)?;
+        let point = match tip.end {
+            End::Start => 0,
+            End::End => frame.cracks[crack].rest.len().checked_sub(1)?,
+        };
+        let reaches = |edge: &BoundaryEdge| {
+            let ends = edge.span.map(|part| edge.points[usize::from(part > 0.5)]);
+            let is_whole = edge.span.iter().all(|part| [0.0, 1.0].contains(part));
+            edge.line == Line::Above(crack) && is_whole && ends.contains(&point)
+        };
+        let has_tip = |k: &usize| fragments.list()[*k].boundaries.iter().flatten().any(reaches);
+        let fragment = (0..fragments.list().len()).find(has_tip)?;
+        moves.get(&(fragments.list()[fragment].body, numbers[fragment]?)).copied()
+    };
+    let moved = |tip: &TipRecord| TipRecord { position: tip.position + way(tip).unwrap_or_default(), ..*tip };
+    frame.tips.iter().map(moved).collect()
 }
 
 /// Whether tips are marked with numbers at all.
