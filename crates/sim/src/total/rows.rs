@@ -164,17 +164,22 @@ impl Lattice {
     }
 }
 
+/// Forces of the cells of a block on their nodes at one side: x, y of the lower row, then of the upper one.
+type Side<const COUNT: usize> = [[f64; COUNT]; 4];
+
 /// Adds the internal forces f_i = −Σ_p V_p P_p ∇w_ip of a run of cells to those of its two rows of nodes.
 ///
 /// `u`, `forces`: x, then y, each of the lower and the upper row.
 #[inline(always)]
 fn add_forces(constants: RowConstants, u: [[&[f64]; 2]; 2], forces: [[&mut [f64]; 2]; 2]) {
     let [[lower_x, upper_x], [lower_y, upper_y]] = forces;
+    let mut forces = [lower_x, lower_y, upper_x, upper_y];
     let [[u_lower_x, u_upper_x], [u_lower_y, u_upper_y]] = u;
-    let mut start = 0;
     let end = u_lower_x.len() - 1;
-    // Forces of each cell on its four nodes: (x, y) for lower left, lower right, upper left, upper right.
-    let mut corner = [[0.0; BLOCK]; 8];
+    let mut left: Side<BLOCK> = [[0.0; BLOCK]; 4];
+    // One place later, beside those of the next cell on the same node.
+    let mut right: Side<{ BLOCK + 1 }> = [[0.0; BLOCK + 1]; 4];
+    let mut start = 0;
     while start < end {
         let count = BLOCK.min(end - start);
         cell_forces(
@@ -190,68 +195,96 @@ fn add_forces(constants: RowConstants, u: [[&[f64]; 2]; 2], forces: [[&mut [f64]
                 &u_upper_y[start..start + count],
                 &u_upper_y[start + 1..start + 1 + count],
             ],
-            &mut corner,
+            &mut left,
+            &mut right,
         );
-        for (target, source) in
-            [(&mut *lower_x, [0, 2]), (&mut *lower_y, [1, 3]), (&mut *upper_x, [4, 6]), (&mut *upper_y, [5, 7])]
-        {
-            for (t, f) in target[start..start + count].iter_mut().zip(&corner[source[0]]) {
-                *t += f;
+        for (force, (left, right)) in forces.iter_mut().zip(left.iter().zip(&mut right)) {
+            for ((f, left), right) in force[start..start + count].iter_mut().zip(left).zip(&*right) {
+                *f += left + right;
             }
-            for (t, f) in target[start + 1..start + 1 + count].iter_mut().zip(&corner[source[1]]) {
-                *t += f;
-            }
+            right[0] = right[count];
         }
         start += count;
     }
+    for (force, right) in forces.into_iter().zip(right) {
+        force[end] += right[0];
+    }
 }
 
+/// Two vectors at a quarter of the way from `a` to `b` and from `b` to `a`.
 #[inline(always)]
-fn cell_forces(count: usize, constants: RowConstants, u: [&[f64]; 8], corner: &mut [[f64; BLOCK]; 8]) {
+fn quarters(a: [f64; 2], b: [f64; 2]) -> [[f64; 2]; 2] {
+    let near = |a: [f64; 2], b: [f64; 2]| [0.75 * a[0] + 0.25 * b[0], 0.75 * a[1] + 0.25 * b[1]];
+    [near(a, b), near(b, a)]
+}
+
+/// Forces of `count` cells on their nodes to the left and to the right.
+///
+/// H e_x is the same at both particles of one height, H e_y at both of one column; and ∇w = (∓(1−b), ∓(1−a))/h and so
+/// on weighs P e_x by the height and P e_y by the column. So P e_x is summed at each height and P e_y in each column
+/// before either is weighed. A mirrored cell has the same sums.
+#[inline(always)]
+fn cell_forces(
+    count: usize,
+    constants: RowConstants,
+    u: [&[f64]; 8],
+    left: &mut Side<BLOCK>,
+    right: &mut Side<{ BLOCK + 1 }>,
+) {
     let RowConstants { two_mu, lambda, inverse_cell_size } = constants;
     let [x00, x10, x01, x11, y00, y10, y01, y11] = u;
     let (x00, x10, x01, x11) = (&x00[..count], &x10[..count], &x01[..count], &x11[..count]);
     let (y00, y10, y01, y11) = (&y00[..count], &y10[..count], &y01[..count], &y11[..count]);
     for k in 0..count {
         // Differences along the four edges of the cell, over h.
-        let bottom = [(x10[k] - x00[k]) * inverse_cell_size, (y10[k] - y00[k]) * inverse_cell_size];
-        let top = [(x11[k] - x01[k]) * inverse_cell_size, (y11[k] - y01[k]) * inverse_cell_size];
-        let left = [(x01[k] - x00[k]) * inverse_cell_size, (y01[k] - y00[k]) * inverse_cell_size];
-        let right = [(x11[k] - x10[k]) * inverse_cell_size, (y11[k] - y10[k]) * inverse_cell_size];
-        let mut f = [0.0; 8];
-        for b in [0.25, 0.75] {
-            for a in [0.25, 0.75] {
-                let h11 = (1.0 - b) * bottom[0] + b * top[0];
-                let h21 = (1.0 - b) * bottom[1] + b * top[1];
-                let h12 = (1.0 - a) * left[0] + a * right[0];
-                let h22 = (1.0 - a) * left[1] + a * right[1];
-                // F − R without cancellation (see constitutive.rs), for any turn: 1 − cosine/r = sine²/(r (r +
-                // |cosine|)), or (r + |cosine|)/r when negative.
-                let cosine = 2.0 + h11 + h22;
+        let at_bottom = [(x10[k] - x00[k]) * inverse_cell_size, (y10[k] - y00[k]) * inverse_cell_size];
+        let at_top = [(x11[k] - x01[k]) * inverse_cell_size, (y11[k] - y01[k]) * inverse_cell_size];
+        let at_left = [(x01[k] - x00[k]) * inverse_cell_size, (y01[k] - y00[k]) * inverse_cell_size];
+        let at_right = [(x11[k] - x10[k]) * inverse_cell_size, (y11[k] - y10[k]) * inverse_cell_size];
+        let (along_x, along_y) = (quarters(at_bottom, at_top), quarters(at_left, at_right));
+        // Of each particle, by its height and its column.
+        let (mut stretch, mut turn, mut volume) = ([[0.0; 2]; 2], [[0.0; 2]; 2], [[0.0; 2]; 2]);
+        for j in 0..2 {
+            for i in 0..2 {
+                let ([h11, h21], [h12, h22]) = (along_x[j], along_y[i]);
+                // 2μ (F − R) = 2μ H + stretch and turn, without cancellation (see constitutive.rs), for any turn: 1 −
+                // cosine/r = sine²/(r (r + |cosine|)), or (r + |cosine|)/r when negative.
+                let cosine = 2.0 + (h11 + h22);
                 let sine = h21 - h12;
-                let r_squared = cosine * cosine + sine * sine;
-                let r = r_squared.sqrt();
+                let r = (cosine * cosine + sine * sine).sqrt();
                 let sum = r + cosine.abs();
-                let stretch = if cosine > 0.0 { sine * sine } else { sum * sum } / (r * sum);
-                let turn = sine / r;
-                let volume = lambda * (h11 + h22 + (h11 * h22 - h12 * h21));
-                let p11 = two_mu * (h11 + stretch) + volume * (1.0 + h22);
-                let p22 = two_mu * (h22 + stretch) + volume * (1.0 + h11);
-                let p12 = two_mu * (h12 + turn) - volume * h21;
-                let p21 = two_mu * (h21 - turn) - volume * h12;
-                // −V P ∇w with ∇w = (∓(1−b), ∓(1−a)) / h and so on.
-                f[0] += p11 * (1.0 - b) + p12 * (1.0 - a);
-                f[1] += p21 * (1.0 - b) + p22 * (1.0 - a);
-                f[2] += p12 * a - p11 * (1.0 - b);
-                f[3] += p22 * a - p21 * (1.0 - b);
-                f[4] += p11 * b - p12 * (1.0 - a);
-                f[5] += p21 * b - p22 * (1.0 - a);
-                f[6] -= p11 * b + p12 * a;
-                f[7] -= p21 * b + p22 * a;
+                let part = two_mu / (r * sum);
+                stretch[j][i] = if cosine > 0.0 { sine * sine } else { sum * sum } * part;
+                turn[j][i] = sine * sum * part;
+                volume[j][i] = lambda * (h11 + h22 + (h11 * h22 - h12 * h21));
             }
         }
-        for (c, value) in corner.iter_mut().zip(f) {
-            c[k] = value;
+        let (mut by_height, mut by_column) = ([[0.0; 2]; 2], [[0.0; 2]; 2]);
+        for j in 0..2 {
+            let v = volume[j];
+            by_height[j] = [
+                2.0 * two_mu * along_x[j][0]
+                    + (stretch[j][0] + stretch[j][1])
+                    + ((v[0] + v[1]) + (v[0] * along_y[0][1] + v[1] * along_y[1][1])),
+                2.0 * two_mu * along_x[j][1]
+                    - (turn[j][0] + turn[j][1])
+                    - (v[0] * along_y[0][0] + v[1] * along_y[1][0]),
+            ];
+            let v = [volume[0][j], volume[1][j]];
+            by_column[j] = [
+                2.0 * two_mu * along_y[j][0] + (turn[0][j] + turn[1][j])
+                    - (v[0] * along_x[0][1] + v[1] * along_x[1][1]),
+                2.0 * two_mu * along_y[j][1]
+                    + (stretch[0][j] + stretch[1][j])
+                    + ((v[0] + v[1]) + (v[0] * along_x[0][0] + v[1] * along_x[1][0])),
+            ];
+        }
+        let (rows, columns) = (quarters(by_height[0], by_height[1]), quarters(by_column[0], by_column[1]));
+        for axis in 0..2 {
+            left[axis][k] = rows[0][axis] + columns[0][axis];
+            right[axis][k + 1] = columns[1][axis] - rows[0][axis];
+            left[2 + axis][k] = rows[1][axis] - columns[0][axis];
+            right[2 + axis][k + 1] = -(rows[1][axis] + columns[1][axis]);
         }
     }
 }
@@ -317,6 +350,29 @@ mod tests {
             for (name, forces) in &found[1..] {
                 assert!(bits(forces) == bits(&found[0].1), "{name}, {count} cells");
             }
+        }
+    }
+
+    /// Truth: symmetry. What is mirrored has mirrored forces, to the bit, whatever the number of cells.
+    #[test]
+    fn mirrored_rows_have_mirrored_forces() {
+        let constants = RowConstants { two_mu: 2.6, lambda: 2.1, inverse_cell_size: 1.0 / 0.7 };
+        for count in (1..70).chain([400]) {
+            let values = |seed: f64| -> Vec<f64> { (0..=count).map(|i| 0.1 * (f64::from(i) * seed).sin()).collect() };
+            let forces = |[lx, ux, ly, uy]: [&[f64]; 4]| OneRun { constants, u: [[lx, ux], [ly, uy]] }.run();
+            let mirrored = |numbers: &[f64], sign: f64| numbers.iter().rev().map(|x| sign * x).collect::<Vec<f64>>();
+            let u = [1.1, 3.7, 2.3, 5.3].map(values);
+            let [lx, ux, ly, uy] = u.each_ref().map(Vec::as_slice);
+            let found = forces([lx, ux, ly, uy]);
+            let m = [(lx, -1.0), (ux, -1.0), (ly, 1.0), (uy, 1.0)].map(|(numbers, sign)| mirrored(numbers, sign));
+            let of_mirrored = forces(m.each_ref().map(Vec::as_slice));
+            for (k, sign) in [-1.0, 1.0, -1.0, 1.0].into_iter().enumerate() {
+                assert!(found[k] == mirrored(&of_mirrored[k], sign), "left to right, {count} cells, {k}");
+            }
+            // Top to bottom.
+            let minus = |numbers: &[f64]| numbers.iter().map(|y| -y).collect::<Vec<f64>>();
+            let upside_down = forces([ux, lx, &minus(uy), &minus(ly)]);
+            assert!(found[0] == upside_down[2] && found[1] == minus(&upside_down[3]), "top to bottom, {count} cells");
         }
     }
 
