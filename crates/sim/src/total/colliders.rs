@@ -9,7 +9,6 @@ use crate::boundary::collider::Obstacle;
 use crate::boundary::constraints::Inertia;
 use fissure_plane::{Matrix, Point, Vector};
 use fissure_scene::Scene;
-use std::collections::BTreeMap;
 
 /// A field at the surface of a body, which a collider can touch.
 #[derive(Debug, Clone, Copy)]
@@ -84,6 +83,8 @@ fn surface_node(field: usize, place: Point, part: f64, h: f64) -> Option<Surface
 pub(super) struct Colliders {
     obstacles: Vec<Obstacle>,
     surface: Vec<SurfaceNode>,
+    /// Of each field, its number from 1 on among those whose surface is found anew; zero between changes and elsewhere.
+    numbers: Vec<u32>,
 }
 
 /// What obstacles do in a step [J/m].
@@ -102,7 +103,7 @@ impl Colliders {
     pub(super) fn new(scene: &Scene, lattice: &Lattice) -> Self {
         let obstacles: Vec<Obstacle> = scene.colliders.iter().map(Obstacle::new).collect();
         let surface = if obstacles.is_empty() { Vec::new() } else { surface_nodes(lattice) };
-        Self { obstacles, surface }
+        Self { obstacles, surface, numbers: Vec::new() }
     }
 
     /// Whether there is none.
@@ -123,17 +124,21 @@ impl Colliders {
         }
         particles.sort_unstable();
         particles.dedup();
-        let mut fillings = BTreeMap::<usize, Filling>::new();
+        let fields = near.fields(lattice);
+        self.numbers.resize(lattice.field_count(), 0);
+        (1..).zip(&fields).for_each(|(number, &(field, _))| self.numbers[field] = number);
+        let mut fillings = vec![Filling::default(); fields.len()];
         let mut reader = lattice.reader();
         for p in particles {
             reader.for_each_part(p, |field, share, w, g| {
-                if near.contains(lattice.position(field)) {
-                    fillings.entry(field).or_default().add(p, share * lattice.particles.volume[p], w, g);
+                if let Some(at) = self.numbers[field].checked_sub(1) {
+                    fillings[at as usize].add(p, share * lattice.particles.volume[p], w, g);
                 }
             });
         }
-        let of = |(&field, filling): (&usize, &Filling)| filling.surface_node(lattice, field, lattice.position(field));
-        self.surface.extend(fillings.iter().filter_map(of));
+        fields.iter().for_each(|&(field, _)| self.numbers[field] = 0);
+        let of = |(&(field, place), filling): (&(usize, Point), &Filling)| filling.surface_node(lattice, field, place);
+        self.surface.extend(fields.iter().zip(&fillings).filter_map(of));
         self.surface.sort_unstable_by_key(|s| s.field);
     }
 
