@@ -155,7 +155,8 @@ impl Simulation {
         let limit = growth::speed_limit(&self.state.cracks, id, &self.scene, &self.elastic, time);
         self.settle_account(id, &assessed, limit);
         let may_run = limit * time_step;
-        let window = PACE_CELLS * self.crossing_time(id);
+        let crossing_time = self.crossing_time(id);
+        let window = PACE_CELLS * crossing_time;
         if let Some(tip) = self.state.cracks.tip_mut(id) {
             tip.keep_pace(assessed.j_integral, time_step, window);
             // What a tip that waits saves up is bounded; it shall not leap later.
@@ -164,7 +165,7 @@ impl Simulation {
             tip.time_at_rest += time_step;
             tip.time_in_ligament = if tip.is_in_last_ligament { tip.time_in_ligament + time_step } else { 0.0 };
         }
-        Runner { id, assessed, may_run: may_run > 0.0, runs: self.runs(id) }
+        Runner { id, assessed, may_run: may_run > 0.0, runs: self.runs(id, crossing_time) }
     }
 
     /// Lets tips grow as far as the energy balance and their speed limits allow, up to the time `time`.
@@ -295,14 +296,15 @@ impl Simulation {
     /// Whether a tip is on its way, so that its account alone says how far it goes. J swings by a half from step to
     /// step with the waves that every increment sends out; a tip that asked it each time would stand still now and
     /// then with ample credit, and what it takes meanwhile would be lost to it.
-    fn runs(&self, id: TipId) -> bool {
+    /// `crossing_time`: that of a wave for a cell [s].
+    fn runs(&self, id: TipId, crossing_time: f64) -> bool {
         let cracks = &self.state.cracks;
         let Some(tip) = cracks.tip(id) else { return false };
         tip.state == TipState::Growing
             && self.solver.sliding().is_some()
             && !tip.has_schedule()
-            && tip.time_at_rest < STANDS_STILL * self.crossing_time(id)
-            && tip.time_in_ligament < IN_LIGAMENT * self.crossing_time(id)
+            && tip.time_at_rest < STANDS_STILL * crossing_time
+            && tip.time_in_ligament < IN_LIGAMENT * crossing_time
     }
 
     /// Time a wave takes for a cell at a tip [s].

@@ -312,6 +312,7 @@ impl Contacts {
         time_step: f64,
     ) {
         let Some(friction) = self.friction else { return };
+        self.normals.begin(probes);
         let mut meetings = self.meetings((probes, cracks, touching), motion, kick, time_step);
         let masses = self.masses(mass, ties, &meetings);
         let mut answers = Answers::new(meetings.len());
@@ -326,7 +327,8 @@ impl Contacts {
         self.relax((meetings, answers), friction, masses, motion, kick);
     }
 
-    /// Goes on with the impulses of [`Contacts::resolve`] after velocities have changed.
+    /// Goes on with the impulses of [`Contacts::resolve`] after velocities have changed, and nothing else: normals are
+    /// as they were.
     pub(super) fn resolve_again(
         &mut self,
         (mass, ties): (&[f64], &Ties),
@@ -455,7 +457,6 @@ impl Contacts {
         kick: f64,
         time_step: f64,
     ) -> Vec<Meeting> {
-        self.normals.begin(probes);
         let facing: Vec<Facing> =
             (0..self.points.len()).filter_map(|point| self.facing(point, (probes, touching), motion, kick)).collect();
         // What is left of the gap may be used up in this step; faces that overlap stay as they are.

@@ -141,6 +141,10 @@ impl<'a> Reader<'a> {
     pub(super) fn energy_density(&mut self, particle: usize, u: &FieldVectors) -> f64 {
         let e = self.lattice.material(particle);
         let density = |h: Matrix| crate::energy_density(&h, e.mu, e.lambda);
+        // As most are: with no misfit, and nothing across a crack.
+        if self.lattice.layout.cut.entries_of(particle).is_none() {
+            return density(self.gradient(particle, u));
+        }
         let own = density(self.strain(particle, u));
         match self.far_strain(particle, u) {
             Some(far) => {
