@@ -2,12 +2,15 @@
 #![allow(clippy::unwrap_used)]
 
 mod common;
+#[path = "common/places.rs"]
+mod places;
 
 use common::cracked_square::{SIZE, cracked_square, cross, triangles};
 use common::{Opened, frame, options, path, scene, square};
 use fissure_post::{Mesh, PostOptions, Slot, post_frame};
 use fissure_scene::{CrackEnd, Cut, Frame, Point, Scene, Vector};
 use nalgebra::Vector3;
+use places::mergeable;
 use proptest::prelude::*;
 
 /// Of the grid on which all that reaches 20 m from the origin is exact in single precision [m]: `f32` has 24 bits.
@@ -104,15 +107,7 @@ proptest! {
         let (scene, frame) = cracked_square(&trunk, &branch, &tip, opening);
         let [_, bevelled] = cut_solids(&scene, &frame, bevel, Cut::Rest);
         for mesh in bevelled {
-            let mut places: Vec<[f64; 3]> = mesh.vertices.iter().map(|v| v.position).collect();
-            places.sort_by(|p, q| p.partial_cmp(q).unwrap());
-            places.dedup();
-            for (i, p) in places.iter().enumerate() {
-                for q in places[i + 1..].iter().take_while(|q| q[0] - p[0] < 1e-3) {
-                    let apart = (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
-                    prop_assert!(apart > 5e-5 * SIZE, "{} at {:?} {:?}", apart, p, q);
-                }
-            }
+            prop_assert_eq!(mergeable(&mesh, 5e-5 * SIZE), None);
         }
     }
 

@@ -2,12 +2,15 @@
 #![allow(clippy::unwrap_used)]
 
 mod common;
+#[path = "common/places.rs"]
+mod places;
 
 use common::cracked_square::{cracked_square, cross, triangles};
 use common::options;
 use fissure_post::{Mesh, PostOptions, Slot, post_frame};
 use fissure_scene::{Cut, Roughness, Walls};
 use nalgebra::Vector3;
+use places::mergeable;
 use proptest::prelude::*;
 use std::collections::BTreeSet;
 
@@ -86,15 +89,7 @@ proptest! {
         let (low, high) = scene.bodies[0].region.bounds();
         let merged = merged * (high - low).amax();
         for mesh in post_frame(&scene, &frame, &options).unwrap().parts.remove(0).1 {
-            let mut places: Vec<[f64; 3]> = mesh.vertices.iter().map(|v| v.position).collect();
-            places.sort_by(|p, q| p.partial_cmp(q).unwrap());
-            places.dedup();
-            for (i, p) in places.iter().enumerate() {
-                for q in places[i + 1..].iter().take_while(|q| q[0] - p[0] < merged) {
-                    let apart = (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
-                    prop_assert!(apart > merged, "{} at {:?} {:?}", apart, p, q);
-                }
-            }
+            prop_assert_eq!(mergeable(&mesh, merged), None);
         }
     }
 }

@@ -2,6 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod common;
+#[path = "common/places.rs"]
+mod places;
 #[path = "common/winding.rs"]
 mod winding;
 
@@ -9,6 +11,7 @@ use common::{Opened, frame, halves, options, particles, scene, square};
 use fissure_plane::find_crossing;
 use fissure_post::{Content, Mesh, PostError, PostOptions, Slot, Vertex, post_frame};
 use fissure_scene::{CrackEnd, Curve, Cut, Frame, OpeningSettings, Part, Point, Region, Scene, Vector, Walls};
+use places::mergeable;
 use proptest::prelude::*;
 use winding::covered_area;
 
@@ -498,15 +501,7 @@ fn what_is_cut_at_rest_may_be_merged_by_distance() {
         let options = PostOptions { cut: Cut::Rest, ..options(&scene) };
         let meshes = post_frame(&scene, &frame, &options).unwrap().parts.remove(0).1;
         for mesh in &meshes {
-            let mut places: Vec<[f64; 3]> = mesh.vertices.iter().map(|v| v.position).collect();
-            places.sort_by(|p, q| p.partial_cmp(q).unwrap());
-            places.dedup();
-            for (i, p) in places.iter().enumerate() {
-                for q in places[i + 1..].iter().take_while(|q| q[0] - p[0] < 1e-3) {
-                    let apart = (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
-                    assert!(apart > 5e-5 * 20.0, "{apart} at {p:?}, {sink} {slide}");
-                }
-            }
+            assert_eq!(mergeable(mesh, 5e-5 * 20.0), None, "{sink} {slide}");
         }
     }
 }
