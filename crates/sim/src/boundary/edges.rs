@@ -18,6 +18,9 @@ pub(crate) fn edges_of(scene: &Scene, selection: &Selection) -> Vec<Chain> {
 /// A weighted mean of the velocity along an edge: (field, weight); weights add up to 1.
 pub(crate) type EdgeMean = Vec<(u32, f64)>;
 
+/// Of the length of an edge.
+const ROUND_OFF: f64 = 1e-9;
+
 /// Stretches of an outline that follow on each other.
 #[derive(Debug, Clone)]
 pub(crate) struct Chain {
@@ -29,6 +32,19 @@ pub(crate) struct Chain {
     pub(crate) is_closed: bool,
     /// Whether other material of the body lies beyond its start and its end.
     pub(crate) goes_on: [bool; 2],
+}
+
+/// The place of a chain that is nearest to another place.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct OnChain {
+    /// How far away the other place is [m].
+    pub(crate) distance: f64,
+    /// Length of the way to it [m].
+    pub(crate) way: f64,
+    /// Itself [m].
+    pub(crate) place: Point,
+    /// Whether it is an end of the chain, beyond which the other place lies.
+    pub(crate) is_beyond: bool,
 }
 
 /// A place of Gauss' rule along a chain.
@@ -135,8 +151,24 @@ impl Chain {
         places
     }
 
+    /// The place of edge number `k` that is nearest to `point`.
+    pub(crate) fn nearest_on(&self, k: usize, point: Point) -> OnChain {
+        let [from, to] = [self.points[k], self.points[k + 1]];
+        let along = to - from;
+        let part = (point - from).dot(&along) / along.norm_squared();
+        let held = part.clamp(0.0, 1.0);
+        let place = from + along * held;
+        let is_last = k + 2 == self.points.len();
+        OnChain {
+            distance: (point - place).norm(),
+            way: self.way[k] + held * (self.way[k + 1] - self.way[k]),
+            place,
+            is_beyond: !self.is_closed && ((k == 0 && part < -ROUND_OFF) || (is_last && part > 1.0 + ROUND_OFF)),
+        }
+    }
+
     /// The hats that are not zero at a place on the way: the index of each with its value.
-    fn hats(&self, knots: &[f64], at: f64) -> [(usize, f64); 2] {
+    pub(crate) fn hats(&self, knots: &[f64], at: f64) -> [(usize, f64); 2] {
         let last = knots.len() - 1;
         let after = knots.partition_point(|&knot| knot <= at);
         let (before, next, gap, run) = match (after, self.is_closed) {

@@ -42,20 +42,8 @@ impl Beside {
     /// to the one that the place has as the particle moves and deforms, and a force there turns the material as at the
     /// place.
     pub(super) fn for_each_entry(&self, points: &Points, lattice: &Lattice, mut visit: impl FnMut(usize, f64)) {
-        let p = self.particle as usize;
-        let place = points.point[p].position;
         let way = self.way(points, lattice.grid.cell_size);
-        if let Some(entries) = lattice.stencils.of(p) {
-            entries.iter().for_each(|e| visit(e.field as usize, e.weight + e.gradient.dot(&way)));
-            return;
-        }
-        let stencil = lattice.stencil(place);
-        let nodes = lattice.grid.stencil(&stencil);
-        for (b, a) in (0..stencil.width).flat_map(|b| (0..stencil.width).map(move |a| (b, a))) {
-            // Those of a particle all exist.
-            if let Some(node) = nodes.at(a, b) {
-                visit(node, stencil.weight(a, b) + stencil.weight_gradient(a, b).dot(&way));
-            }
-        }
+        let place = points.point[self.particle()].position;
+        lattice.for_each_slope(self.particle(), place, |field, w, slope| visit(field, w + slope.dot(&way)));
     }
 }

@@ -228,6 +228,22 @@ impl Lattice {
         }
     }
 
+    /// Calls `visit` with (field, weight, its gradient [1/m]) for every entry of the stencil of a particle at `place`.
+    pub(super) fn for_each_slope(&self, particle: usize, place: Point, mut visit: impl FnMut(usize, f64, Vector)) {
+        if let Some(entries) = self.stencils.of(particle) {
+            entries.iter().for_each(|e| visit(e.field as usize, e.weight, e.gradient));
+            return;
+        }
+        let stencil = self.stencil(place);
+        let nodes = self.grid.stencil(&stencil);
+        for (b, a) in (0..stencil.width).flat_map(|b| (0..stencil.width).map(move |a| (b, a))) {
+            // Those of a particle all exist.
+            if let Some(node) = nodes.at(a, b) {
+                visit(node, stencil.weight(a, b), stencil.weight_gradient(a, b));
+            }
+        }
+    }
+
     /// From a particle at `place` to the node of an entry [m].
     pub(super) fn arm(&self, entry: &Entry, place: Point) -> Vector {
         self.grid.position(self.fields.node(entry.field as usize)) - place

@@ -1,6 +1,6 @@
 //! Supports as prescribed velocities of edges, nodes and particles.
 
-use super::held_edge::HeldEdge;
+use super::edge_layer::EdgeLayer;
 use super::lattice::Lattice;
 use super::nodes::Nodes;
 use super::points::Points;
@@ -26,7 +26,7 @@ pub(super) struct Supports {
     /// Particles of each support, chosen at rest.
     held: Vec<Vec<u32>>,
     /// Edges of each support.
-    edges: Vec<Vec<HeldEdge>>,
+    edges: Vec<Vec<EdgeLayer>>,
     /// What is held of edges on the grid of this step, along x and along y.
     systems: [ConstraintSystem; 2],
 }
@@ -45,7 +45,7 @@ impl Supports {
             }
             let is_edge = matches!(support.selection, Selection::Edge { .. } | Selection::Outline(_));
             let chains = if is_edge { edges_of(scene, &support.selection) } else { Vec::new() };
-            let edges: Vec<HeldEdge> = chains.iter().map(|chain| HeldEdge::new(setup, chain, &selected)).collect();
+            let edges: Vec<EdgeLayer> = chains.iter().map(|chain| EdgeLayer::new(setup, chain)).collect();
             Ok((if edges.is_empty() { selected } else { Vec::new() }, edges))
         };
         let of_supports = scene.supports.iter().enumerate().map(held);
@@ -136,7 +136,7 @@ impl Supports {
 
     /// Lays edges on the grid of this step, beside the `fields` that each support holds.
     fn lay_edges(&mut self, setup: &Setup, points: &Points, lattice: &Lattice, fields: Vec<Vec<u32>>, mass: &[f64]) {
-        let held = |(edges, fields): (&Vec<HeldEdge>, Vec<u32>)| Held {
+        let held = |(edges, fields): (&Vec<EdgeLayer>, Vec<u32>)| Held {
             means: edges.iter().flat_map(|edge| edge.means(points, lattice)).collect(),
             fields,
         };
