@@ -6,7 +6,7 @@
 //! plane stress. The load is constant and 30 % above what starts the crack. The beam is brought to rest whenever the
 //! crack has grown by half a cell, so that the tip feels its load as if at rest.
 //!
-//! Reference: own finite element solution with increments of 0.12 (`assets/reference`): the crack enters the middle
+//! Reference: own finite element solution with increments of 0.015 (`assets/reference`): the crack enters the middle
 //! hole, as in the experiment. Cells are counted per inch.
 
 use crate::case::{Case, Options};
@@ -26,8 +26,9 @@ pub(crate) const CASE: Case = Case::new(
 .family_cells(4.0)
 .long();
 
-/// Kinetic energy at rest between increments, as a part of the strain energy.
-const PAUSE: f64 = 1e-5;
+/// Kinetic energy at rest between increments, as a part of the strain energy. With 1e-5 a beam that has only begun to
+/// give way counts as at rest: K_I stayed behind by a quarter, and the path went astray by 0.1 in whatever the cells.
+const PAUSE: f64 = 1e-7;
 const INCH: f64 = 0.0254;
 /// Heights of the holes at x = 6 [in].
 const HOLES: [f64; 3] = [2.75, 4.75, 6.75];
@@ -95,7 +96,7 @@ fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationErr
         .collect();
     // The reference ends short of the hole: its points are compared with the path found, which goes on.
     let apart = reference.iter().map(|&p| distance(p, &found)).fold(0.0, f64::max);
-    tally.bound("largest distance from the reference path", "in", apart, Expected::AtMost(0.15));
+    tally.bound("largest distance from the reference path", "in", apart, Expected::AtMost(0.08));
     let end = found[found.len() - 1];
     let left = frame.tips[0].state == TipState::LeftBody;
     let into_middle = left && ((end - Point::new(6.0, HOLES[1])).norm() - RADIUS).abs() < 0.05;
