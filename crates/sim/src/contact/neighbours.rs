@@ -9,8 +9,8 @@ use fissure_plane::{Point, Vector, distance_to_segment, nearest_on_segment};
 /// What is farther away than this, in cells, does not touch: round surfaces lie a little before their edges.
 const TOUCHES: f64 = 0.2;
 
-/// Surfaces whose normals have a larger product than this do not face each other, however things turn until the next
-/// look.
+/// Surfaces whose normals have a larger product than this do not face each other, as long as none of them turns by more
+/// than 60 degrees until the next look, both together.
 const MAY_FACE: f64 = 0.5;
 
 /// Parts of one body that are nearer to each other at rest than this, in cells, belong together: the two sides of a
@@ -350,7 +350,12 @@ mod tests {
         let joined: &[[u32; 2]] = if parts == 2 { &[[0, count as u32]] } else { &[] };
         surface.number_pieces(joined);
         let of_ring = |v: usize| if v < count { Vector::zeros() } else { Vector::new(-turn, 0.3 * turn) };
-        let slide = |v: usize| slides[v * slides.len() / (2 * count)];
+        // From one to the next, so that no edge is sheared by as much as it is long.
+        let slide = |v: usize| {
+            let at = (v % count) as f64 / count as f64 * slides.len() as f64;
+            let [a, b] = [0, 1].map(|next| slides[(at as usize + next + v / count) % slides.len()]);
+            (a.0 + (b.0 - a.0) * at.fract(), a.1 + (b.1 - a.1) * at.fract())
+        };
         let moved = |(v, rest): (usize, Point)| rest + of_ring(v) + Vector::new(slide(v).0, slide(v).1);
         let place = surface.places_at_rest().into_iter().enumerate().map(moved).collect();
         (surface, place)
@@ -365,13 +370,15 @@ mod tests {
         /// all that touch are found at any time.
         #[test]
         fn what_touches_before_the_next_look_is_found(
-            count in 8..60_usize,
+            edge in 0.3..1.0_f64,
             slides in prop::collection::vec((-0.3..0.3_f64, -0.3..0.3_f64), 1..12),
             parts in 0..3_usize,
             turn in 0.0..0.6_f64,
-            cell_size in 0.05..0.4_f64,
+            cell_size in 0.1..0.4_f64,
             ways in prop::collection::vec((0.0..1.0_f64, 0.0..std::f64::consts::TAU, 0.0..0.5_f64), 1..8),
         ) {
+            // A ring is 7.9 long; surfaces have edges up to a cell long.
+            let count = (7.9 / (edge * cell_size)).ceil() as usize;
             let (surface, mut place) = moved(count, &slides, parts, turn);
             let most_moved = if parts == 1 { MOST_MOVED_OF_PIECES } else { MOST_MOVED };
             let scale = (cell_size, most_moved);
@@ -391,10 +398,11 @@ mod tests {
             let mut found = Neighbours::find(&scenery(&surface, &place, scale));
             let mut last = vec![Vector::zeros(); surface.len()];
             for (part, heading, whole) in ways {
-                // The ring as a whole, and half of it by as much more: what is far from where they meet has to be
+                // The ring as a whole, and one side of it by as much more: what is far from where they meet has to be
                 // followed as well.
                 let way = Vector::new(heading.cos(), heading.sin()) * (part * most_moved * cell_size);
-                let of = |v: usize| if v < count { Vector::zeros() } else if v < count + count / 2 { way } else { way * whole };
+                let beside = |v: usize| (std::f64::consts::PI * (v - count) as f64 / count as f64).sin().powi(2);
+                let of = |v: usize| if v < count { Vector::zeros() } else { way * (whole + (1.0 - whole) * beside(v)) };
                 let velocity: Vec<Vector> = (0..surface.len()).map(of).collect();
                 found.go_on(&scenery(&surface, &place, scale), &last, 1.0);
                 found.nearing.foresee(&surface, &velocity, 1.0);

@@ -16,8 +16,9 @@ impl Simulation {
     /// cannot tell that frequency, velocities are set to zero at every peak of the kinetic energy instead, those of the
     /// moment of the strains: with v = 0 half a step before, each stop may make 1/(1 − (ω Δt/2)²) of the energy of a
     /// wave of frequency ω, and short waves grow. Stops when no more than `tolerance` of the strain energy is left as
-    /// kinetic energy over a whole round, or after `most_steps`. Returns the number of steps. What has only begun to move
-    /// has little of that: after small changes, as growth by half a cell, a tolerance of 1e-7 or less is called for.
+    /// kinetic energy over a whole round, or after `most_steps`. Returns the number of steps. What has only begun to
+    /// move has little of that: after small changes, as growth by half a cell, a tolerance of 1e-7 or less is called
+    /// for.
     ///
     /// # Errors
     /// As [`Simulation::advance`].
