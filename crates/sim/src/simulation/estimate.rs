@@ -71,11 +71,11 @@ struct Costs {
 }
 
 const COSTS: Costs = Costs {
-    total_step: 2.4e-9,
-    cut_step: 1.3e-6,
+    total_step: 1.4e-9,
+    cut_step: 1.05e-6,
     updated_step: 8e-9,
-    look: 4e-5,
-    grown_cell: 0.0025,
+    look: 3.1e-5,
+    grown_cell: 0.002,
     other_crack: 0.15,
     most_others: 2.0,
     recorded: 3.5e-7,
