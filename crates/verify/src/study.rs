@@ -225,6 +225,17 @@ mod tests {
         Ok(())
     }
 
+    /// Truth: energy is conserved; a run stops where there is more by a hundredth than what was done on it. A plate that
+    /// is pulled all at once, turned, and moved within a cell, with the bilinear kernel and nothing that damps.
+    #[test]
+    fn a_sudden_pull_brings_in_no_more_than_its_work() -> Result<(), SimulationError> {
+        let study = STUDIES.iter().find(|study| study.name == "step-load");
+        let scheme = Scheme::updated(Transfer::Flip(1.0), Kernel::Bilinear);
+        let found = study.map(|study| study.run(scheme, 10.0, 4, &mut |_| ())).transpose()?;
+        assert_eq!(found.map(|found| found.failures), Some(Vec::new()));
+        Ok(())
+    }
+
     /// Truth: the default scheme is what the cases are solved by themselves, to the bit; another formulation is not.
     #[test]
     fn the_default_scheme_changes_nothing() -> Result<(), SimulationError> {

@@ -4,7 +4,7 @@ use super::lattice::Lattice;
 use super::points::Points;
 use super::setup::Setup;
 use crate::boundary::loads::nearest;
-use fissure_scene::{Matrix, Point, Vector};
+use fissure_scene::{Kernel, Matrix, Point, Vector};
 
 /// A place of the material that goes with a particle.
 #[derive(Debug, Clone, Copy)]
@@ -32,9 +32,13 @@ impl Beside {
         way.cap_magnitude(cell_size)
     }
 
-    /// A place at rest beside the nearest particle of `layer`; none of no particles.
+    /// A place at rest beside the nearest particle of `layer`, with the bilinear kernel that of the particle itself, as
+    /// its gradients do not vanish with its weights; none of no particles.
     pub(super) fn nearest(setup: &Setup, layer: &[u32], place: Point) -> Option<Self> {
         let particle = nearest(&setup.particles, layer.iter().copied(), place)?;
+        if setup.scene.solver.kernel == Kernel::Bilinear {
+            return Some(Self::at(particle));
+        }
         Some(Self { particle, offset: place - setup.particles.rest[particle as usize] })
     }
 
