@@ -225,8 +225,8 @@ mod tests {
         Ok(())
     }
 
-    /// Truth: energy is conserved; a run stops where there is more by a hundredth than what was done on it. A plate that
-    /// is pulled all at once, turned, and moved within a cell, with the bilinear kernel and nothing that damps.
+    /// Truth: energy is conserved; a run stops where there is more by a hundredth than what was done on it. A plate
+    /// that is pulled all at once, turned, and moved within a cell, with the bilinear kernel and nothing that damps.
     #[test]
     fn a_sudden_pull_brings_in_no_more_than_its_work() -> Result<(), SimulationError> {
         let study = STUDIES.iter().find(|study| study.name == "step-load");
