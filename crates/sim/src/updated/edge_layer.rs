@@ -16,7 +16,8 @@ use super::lattice::Lattice;
 use super::points::Points;
 use super::setup::Setup;
 use crate::boundary::edges::{Chain, EdgeMean, OnChain};
-use fissure_scene::{Kernel, Matrix, Vector};
+use fissure_plane::{bounds, segments_touch};
+use fissure_scene::{Kernel, Matrix, Point, Vector};
 use std::collections::BTreeMap;
 
 /// Knots are no closer than this, in cells, wherever the grid lies beside them: waves between them are then longer than
@@ -91,12 +92,18 @@ impl EdgeLayer {
         let is_end = |k: usize| !chain.is_closed && (k == 0 || k + 1 == knots);
         let lengths = (0..knots).map(|k| length / pieces * if is_end(k) { 0.5 } else { 1.0 }).collect();
 
+        let gaps = gaps_near(setup, chain, depth);
         let mut sums = vec![Sums::default(); knots];
         let mut particles: Vec<LayerParticle> = Vec::new();
         for (p, at) in below(setup, chain, depth) {
             let up = at.place - setup.particles.rest[p];
             let t = up.norm() / depth;
             if at.is_beyond || t <= 0.0 || t >= 1.0 {
+                continue;
+            }
+            // A hair below the edge, where cracks begin.
+            let (rest, top) = (setup.particles.rest[p], at.place - up * 1e-6);
+            if gaps.iter().any(|gap| segments_touch(rest, top, gap[0], gap[1])) {
                 continue;
             }
             // φ and Φ, without dimension.
@@ -199,6 +206,19 @@ fn below(setup: &Setup, chain: &Chain, depth: f64) -> BTreeMap<usize, OnChain> {
         }
     }
     nearest
+}
+
+/// Drawn cracks, and edges of the body that are not of the chain, within `depth` of it [m]: what lies behind them does
+/// not move as the edge does.
+fn gaps_near(setup: &Setup, chain: &Chain, depth: f64) -> Vec<[Point; 2]> {
+    let reach = Vector::repeat(depth);
+    let (low, high) = bounds(&chain.points);
+    let cracks = setup.scene.cracks.iter().flat_map(|crack| crack.points.windows(2).map(|w| [w[0], w[1]]));
+    let of_ring = |ring: &[Point]| (0..ring.len()).map(|k| [ring[k], ring[(k + 1) % ring.len()]]).collect::<Vec<_>>();
+    let rings = setup.scene.bodies[chain.body].region.rings().flat_map(of_ring);
+    let others = rings.filter(|edge| !chain.points.windows(2).any(|w| w == edge.as_slice()));
+    let is_near = |gap: &[Point; 2]| gap[0].sup(&gap[1]) >= low - reach && gap[0].inf(&gap[1]) <= high + reach;
+    cracks.chain(others).filter(is_near).collect()
 }
 
 /// What has become of a line of length 1 at a particle, `outwards` at rest.
