@@ -3,7 +3,7 @@
 use crate::body_size::body_size;
 use crate::boolean::material;
 use crate::closed::shifts as closed;
-use crate::crumbs::hold_crumb;
+use crate::drawn_out::hold_drawn_out;
 use crate::edges::MovedLines;
 use crate::error::PostError;
 use crate::explode::{groups, together, ways};
@@ -84,7 +84,7 @@ pub(crate) fn cracked_meshes(scene: &Scene, frame: &Frame, options: &PostOptions
         let mut boundaries: Vec<Vec<SourceEdge>> =
             fragment.boundaries.iter().map(|boundary| lines.edges(boundary, grid)).collect();
         if options.opening.is_none() {
-            hold_crumb(&mut boundaries, frame, object, scene.particle_spacing, grid);
+            hold_drawn_out(&mut boundaries, frame, object, scene.particle_spacing, grid);
         }
         if let Some(lines) = &still_lines {
             let edges = fragment.boundaries.iter().flat_map(|boundary| lines.edges(boundary, grid));

@@ -89,6 +89,12 @@ impl<'a> Interior<'a> {
         Some((particles.rest[p] + back * (place - particles.position[p]), particles.velocity[p]))
     }
 
+    /// Whether a particle of fragment `piece` is in a region between `contours` [m].
+    pub(crate) fn is_in(&self, contours: &[Vec<Point>], piece: u32) -> bool {
+        let of_piece = self.now.particles.iter().filter(|binned| binned.piece == piece);
+        of_piece.into_iter().any(|binned| encloses(contours, binned.place))
+    }
+
     /// Position [m] and velocity [m/s] of the material of fragment `piece` that is at `rest` [m] at rest: the mean of
     /// what the particles around it see there, x = x_p + F_p (X − X_p), the nearer the more. Only those count that are
     /// seen `from` a place beside it, on its side of cracks. None where there are none.
@@ -194,6 +200,16 @@ impl Bins {
 /// Column and row of the bin that holds `place`; far away ones are all in the last.
 fn bin_of(place: Point, width: f64) -> [i32; 2] {
     [place.x, place.y].map(|x| (x / width).floor() as i32)
+}
+
+/// Whether a place [m] is between closed contours [m]: an odd number of their edges is to the right of it.
+pub(crate) fn encloses(contours: &[Vec<Point>], place: Point) -> bool {
+    let edges = contours.iter().flat_map(|contour| contour.iter().zip(contour.iter().cycle().skip(1)));
+    let is_right = |(a, b): &(&Point, &Point)| {
+        let crosses = (a.y > place.y) != (b.y > place.y);
+        crosses && a.x + (b.x - a.x) * ((place.y - a.y) / (b.y - a.y)) > place.x
+    };
+    edges.filter(is_right).count() % 2 == 1
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use crate::boolean::{Edge, Shape, SourceIndex, common, covered_twice, twice_area
 use crate::slivers::is_sliver;
 use crate::snap::{Grid, GridPoint};
 use crate::source::SourceEdge;
+use fissure_scene::{Point, Vector};
 use std::collections::BTreeSet;
 
 /// What the boundary of a fragment encloses.
@@ -61,10 +62,28 @@ pub(crate) struct Tangle {
     pub(crate) region: Shape,
 }
 
+/// An overlap wider than contact is inexact, in which only one of the two has particles: faces of the other one have
+/// ridden along with what lay beside them.
+pub(crate) struct Claim {
+    pub(crate) owner: usize,
+    pub(crate) other: usize,
+    pub(crate) region: Shape,
+}
+
 /// Where fragments lie in each other.
 pub(crate) struct Overlaps {
     pub(crate) lenses: Vec<Lens>,
     pub(crate) tangles: Vec<Tangle>,
+    pub(crate) claims: Vec<Claim>,
+}
+
+/// What is known of the material of fragments.
+pub(crate) trait Material {
+    /// Where what is at a place [m] in a fragment was at rest [m], and how fast it is [m/s].
+    fn at(&self, fragment: &Enclosed, place: Point) -> Option<(Point, Vector)>;
+
+    /// Whether a particle of a fragment is in a region between contours [m].
+    fn is_in(&self, fragment: &Enclosed, contours: &[Vec<Point>]) -> bool;
 }
 
 impl Lattice {
@@ -100,28 +119,49 @@ impl Lattice {
         covered_twice((0..fragments.len()).flat_map(|i| self.edges(i, fragments)))
     }
 
-    /// Where fragments lie in each other, but for overlaps wider than `widest` [m] in the mean. Where some have another
-    /// form than that of a lens all of the pairs around are looked at one by one, as more than two may lie there.
-    pub(crate) fn overlaps(&self, fragments: &[Enclosed], widest: f64) -> Overlaps {
-        let shared = |regions: Vec<Shape>| regions.into_iter().filter(|region| self.is_shared(region, widest));
-        let mut found = Overlaps { lenses: Vec::new(), tangles: Vec::new() };
+    /// Where fragments lie in each other, but for overlaps wider than `widest` [m] in the mean in which both have
+    /// particles, or none. Where some have another form than that of a lens all of the pairs around are looked at one
+    /// by one, as more than two may lie there.
+    pub(crate) fn overlaps(&self, fragments: &[Enclosed], widest: f64, material: &impl Material) -> Overlaps {
+        let real = |regions: Vec<Shape>| regions.into_iter().filter(|region| !region.iter().all(|c| is_sliver(c)));
+        let mut found = Overlaps { lenses: Vec::new(), tangles: Vec::new(), claims: Vec::new() };
         let mut tangled = BTreeSet::new();
-        for region in shared(self.regions(fragments)) {
-            match self.lens(&region) {
+        for region in real(self.regions(fragments)) {
+            match self.lens(&region).filter(|_| !self.is_wide(&region, widest)) {
                 Some(lens) => found.lenses.push(lens),
                 None => tangled.extend(self.pairs_near(&region, fragments)),
             }
         }
         found.lenses.retain(|lens| !tangled.contains(&lens.fragments()));
         for pair in tangled {
-            for region in shared(self.common(pair, fragments)) {
-                match self.lens(&region) {
-                    Some(lens) => found.lenses.push(lens),
-                    None => found.tangles.push(Tangle { pair, region }),
+            for region in real(self.common(pair, fragments)) {
+                if self.is_wide(&region, widest) {
+                    found.claims.extend(self.claim(pair, region, fragments, material));
+                } else if let Some(lens) = self.lens(&region) {
+                    found.lenses.push(lens);
+                } else {
+                    found.tangles.push(Tangle { pair, region });
                 }
             }
         }
         found
+    }
+
+    /// Which of a pair has particles in a region, if it is one.
+    fn claim(
+        &self,
+        [a, b]: [usize; 2],
+        region: Shape,
+        fragments: &[Enclosed],
+        material: &impl Material,
+    ) -> Option<Claim> {
+        let place = |edge: &Edge| self.step * Point::new(edge.a.x as f64, edge.a.y as f64);
+        let contours: Vec<Vec<Point>> = region.iter().map(|contour| contour.iter().map(place).collect()).collect();
+        match [a, b].map(|k| material.is_in(&fragments[k], &contours)) {
+            [true, false] => Some(Claim { owner: a, other: b, region }),
+            [false, true] => Some(Claim { owner: b, other: a, region }),
+            _ => None,
+        }
     }
 
     /// What two fragments have in common.
@@ -129,11 +169,11 @@ impl Lattice {
         common(self.edges(a, fragments), self.edges(b, fragments))
     }
 
-    /// Whether an overlap is more than rounding and not wider than `widest` [m].
-    fn is_shared(&self, shape: &Shape, widest: f64) -> bool {
+    /// Whether an overlap is wider than `widest` [m] in the mean.
+    fn is_wide(&self, shape: &Shape, widest: f64) -> bool {
         let area = 0.5 * shape.iter().map(|contour| twice_area(contour)).sum::<i128>() as f64;
         let half: f64 = 0.5 * shape.iter().flatten().map(length).sum::<f64>();
-        !shape.iter().all(|contour| is_sliver(contour)) && area * self.step <= widest * half
+        area * self.step > widest * half
     }
 
     /// The two sides of an overlap; none where it has another form.

@@ -11,8 +11,8 @@
 //!    of steps 3 to 7, `carrying`; `sight`: on which side of cracks, `drawn_along`: with faces that are shown
 //!    elsewhere, `untangled`: without folds; `rest_room`: no corners beside each other, `rest_needles`: no needles at
 //!    rest, `parted_corners`, `pressed_corners`: those in one place, at rest or now, kept apart.
-//!    `crumbs`: fragments of a few particles move as these do. `closed`: cracks within a fragment are closed where they
-//!    are hardly open.
+//!    `drawn_out`: no point leaves the particles of its fragment. `closed`: cracks within a fragment are closed where
+//!    they are hardly open.
 //! 3. `boolean`: a fragment is where its own edges wind around a place at least once. An open crack in it takes one
 //!    off; where its faces overlap one is added, so cracks that are closed have no walls, unless all are to have some
 //!    (`held_open`), or cracks are shown wider than they are (`widening`). Fragments may turn, fly
@@ -54,9 +54,9 @@ mod colliders;
 #[path = "../tests/common/mod.rs"]
 mod common;
 mod cracked;
-mod crumbs;
 mod drawn_along;
 mod drawn_curve;
+mod drawn_out;
 mod edges;
 mod error;
 mod explode;

@@ -41,7 +41,7 @@ impl Solids<'_> {
         let mut pushed = BTreeSet::new();
         let mut numbers: Vec<usize> = (0..all.len()).collect();
         for _ in 0..ROUNDS {
-            let apart = ways_apart(&all, &held, WIDEST_OVERLAP * self.scene.cell_size);
+            let apart = ways_apart(&all, &held, WIDEST_OVERLAP * self.scene.cell_size, self);
             let mut goes_on = false;
             for (k, ways) in apart.ways.iter().enumerate() {
                 if !ways.is_empty()

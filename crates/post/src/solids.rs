@@ -8,7 +8,7 @@ use crate::error::PostError;
 use crate::extrude::Extrusion;
 use crate::history::attributes;
 use crate::interior::Interior;
-use crate::lattice::Enclosed;
+use crate::lattice::{Enclosed, Material};
 use crate::mesh::{Content, Mesh, MeshDefect, object_name};
 use crate::options::PostOptions;
 use crate::overlaps::share_out_overlaps;
@@ -18,7 +18,7 @@ use crate::slivers::without_slivers;
 use crate::snap::Grid;
 use crate::source::{Carried, SourceEdge};
 use crate::triangulate::{Cap, Division, triangulate};
-use fissure_scene::{Attribute, Cut, Frame, Scene};
+use fissure_scene::{Attribute, Cut, Frame, Point, Scene, Vector};
 use std::collections::BTreeMap;
 
 /// Overlaps of fragments that are at most so wide in the mean are inaccuracies of contact, in cells: faces that press
@@ -112,8 +112,7 @@ impl<'a> Solids<'a> {
 
     /// Parts fragments that lie in each other in the middle of what they have in common.
     fn part(&self, fragments: &mut [Enclosed]) -> Result<(), PostError> {
-        let material = |of: &Enclosed, place| self.interiors[of.body as usize].at(place, of.piece);
-        share_out_overlaps(fragments, WIDEST_OVERLAP * self.scene.cell_size, material);
+        share_out_overlaps(fragments, WIDEST_OVERLAP * self.scene.cell_size, self);
         fragments.iter_mut().filter(|fragment| fragment.has_lost).try_for_each(|of| self.tidy(of, Growth::Hardly))
     }
 
@@ -212,6 +211,16 @@ impl<'a> Solids<'a> {
     }
 }
 
+impl Material for Solids<'_> {
+    fn at(&self, fragment: &Enclosed, place: Point) -> Option<(Point, Vector)> {
+        self.interiors[fragment.body as usize].at(place, fragment.piece)
+    }
+
+    fn is_in(&self, fragment: &Enclosed, contours: &[Vec<Point>]) -> bool {
+        self.interiors[fragment.body as usize].is_in(contours, fragment.piece)
+    }
+}
+
 /// A polygon that becomes a solid.
 pub(crate) struct SolidCap {
     pub(crate) cap: Cap,
@@ -231,7 +240,6 @@ mod tests {
     use super::*;
     use crate::common::{options, scene, square};
     use crate::slot::Slot;
-    use fissure_scene::{Point, Vector};
 
     /// The square of 1 m at `x`, with an edge of 1e-4 m along one side and a corner that stands out by as much.
     fn boundary(x: f64, grid: Grid) -> Vec<SourceEdge> {
