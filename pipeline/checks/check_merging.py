@@ -2,8 +2,8 @@
 
 usage: check_merging.py FOLDER DISTANCE
 
-Reads the GLB files of the part `cracked` in FOLDER, one frame each. DISTANCE is a part of the longest side of the first
-object, 1e-4 say, or in metres with an m behind it. As Blender's Merge by Distance does, each vertex takes those nearer
+Reads the GLB files of the part `cracked` in FOLDER, one frame each. DISTANCE is a part of the longest side of the
+body of each object, as it is first seen, 1e-4 say, or in metres with an m behind it. As Blender's Merge by Distance does, each vertex takes those nearer
 to it that have not gone to another one; triangles without three corners go. An edge of what is left must have one
 triangle on either side. Needs numpy and scipy; prints objects that break, and how many have anything to merge.
 """
@@ -44,22 +44,27 @@ def is_closed(faces, count):
     return bool((times == 1).all() and numpy.isin(back, forth).all())
 
 
+def body(name):
+    """The body of an object by its name."""
+    return name.rpartition("_piece_")[0]
+
+
 def main(folder, distance):
     files = [path for path in sorted(pathlib.Path(folder).glob("*.glb")) if path.stem.split(".")[-1].isdigit()]
     files = [path for path in files if "_" not in path.stem.split(".")[0]]
     if not files:
         sys.exit(f"{folder}: no GLB file of the part `cracked`")
-    size, objects, touched, broken = None, 0, 0, 0
+    sizes, objects, touched, broken = {}, 0, 0, 0
     for path in files:
         for name, _, vertices, faces in Glb(path).objects():
-            size = size or numpy.ptp(vertices, axis=0).max()
+            size = sizes.setdefault(body(name), numpy.ptp(vertices, axis=0).max())
             within = float(distance[:-1]) if distance.endswith("m") else float(distance) * size
             left, count, has_merged = merged(vertices, faces, within)
             objects, touched = objects + 1, touched + has_merged
             if not is_closed(left, count):
                 broken += 1
                 print(f"{path.name}: {name} is not closed when vertices are merged", file=sys.stderr)
-    print(f"{len(files)} files, {objects} objects, {touched} with vertices to merge within {within:.1e} m: {broken} bad")
+    print(f"{len(files)} files, {objects} objects, {touched} with vertices to merge within {distance}: {broken} bad")
     sys.exit(broken > 0)
 
 

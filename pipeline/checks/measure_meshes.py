@@ -26,7 +26,7 @@ import tempfile
 
 import numpy
 import shapely
-from check_merging import is_closed, merged
+from check_merging import body, is_closed, merged
 from check_surfaces import SHARP, cap, cross, triangle_quality, worst_overlap
 from glb import Glb
 
@@ -43,11 +43,11 @@ def seconds():
 def measure(folder):
     files = [path for path in sorted(folder.glob("*.glb")) if path.stem.split(".")[-1].isdigit()]
     row = dict.fromkeys(COLUMNS[3:-1], 0)
-    row["frames"], size, before = len(files), None, {}
+    row["frames"], sizes, before = len(files), {}, {}
     for path in files:
         here, regions = {}, []
         for name, _, vertices, faces in Glb(path).objects():
-            size = size or numpy.ptp(vertices, axis=0).max()
+            size = sizes.setdefault(body(name), numpy.ptp(vertices, axis=0).max())
             row["objects"] += 1
             row["vertices"] += len(vertices)
             row["triangles"] += len(faces)
