@@ -3,7 +3,7 @@
 use crate::SimulationError;
 use crate::boundary::supports::Reaction;
 use crate::crack::cracks::{Cracks, TipId};
-use crate::tip::zone::TipZone;
+use crate::tip::zone::{Opening, TipZone};
 use fissure_scene::{CrackFrame, Matrix, OutlineFrame, ParticleFrame, Point, Vector};
 
 /// A formulation of the solver, as the run sees it.
@@ -121,6 +121,9 @@ pub(crate) trait Observed: Sync {
 
     /// The material within `radius` [m] of a tip.
     fn tip_zone(&self, cracks: &Cracks, id: TipId, radius: f64) -> TipZone;
+
+    /// The opening behind a tip, and the distance at which it was taken; `into`: [`TipZone::into`].
+    fn opening(&self, cracks: &Cracks, id: TipId, into: Matrix) -> Opening;
 
     /// As [`Observed::tip_zone`], but all points are said to be above the crack: what J does not ask for. None where
     /// faces do something to each other or something presses on them.

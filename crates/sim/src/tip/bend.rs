@@ -2,7 +2,6 @@
 
 use crate::crack::crossing::{Side, side_of_crack};
 use fissure_plane::{Point, Vector, bounds, nearest_on_segment};
-use std::f64::consts::TAU;
 
 /// A crack behind its tip, in the frame of the tip.
 #[derive(Debug, Clone, Default)]
@@ -92,13 +91,15 @@ impl Bend {
         Some((if is_on { own } else { side_of_crack(&self.line, foot.segment, place) }, distance))
     }
 
-    /// Angle from e1 to a place, turned to without crossing the crack: left of it above 0, right of it below [rad].
-    pub(crate) fn angle(place: Point, side: Option<Side>) -> f64 {
-        let angle = place.y.atan2(place.x);
+    /// Whether the angle from e1 to a place goes on beyond ±π, as turned to without crossing the crack: left of it
+    /// above 0, right of it below.
+    pub(crate) fn is_beyond(place: Vector, side: Option<Side>) -> bool {
+        // Behind the tip, 0 has a side too.
+        let is_behind = place.x < 0.0;
         match side {
-            Some(Side::Above) if angle < 0.0 => angle + TAU,
-            Some(Side::Below) if angle > 0.0 => angle - TAU,
-            _ => angle,
+            Some(Side::Above) => place.y < 0.0 || is_behind && place.y.is_sign_negative(),
+            Some(Side::Below) => place.y > 0.0 || is_behind && place.y.is_sign_positive(),
+            None => false,
         }
     }
 
@@ -168,10 +169,14 @@ mod tests {
         let bend = Bend::new(vec![Point::new(-2.0, -2.0), Point::new(-1.0, 0.0), Point::origin()]);
         let angle = |x: f64, y: f64| {
             let place = Point::new(x, y);
-            Bend::angle(place, bend.side(place, Side::Above).map(|of| of.0))
+            let side = bend.side(place, Side::Above).map(|of| of.0);
+            let turn = if Bend::is_beyond(place.coords, side) { 2.0 * PI } else { 0.0 };
+            let angle = y.atan2(x);
+            if side == Some(Side::Below) { angle - turn } else { angle + turn }
         };
         assert!((angle(1.0, 1.0) - 0.25 * PI).abs() < 1e-14 && (angle(1.0, -1.0) + 0.25 * PI).abs() < 1e-14);
         assert!((angle(-2.0, 0.0) - PI).abs() < 1e-14 && (angle(-2.0, -1.0) - PI - 0.5_f64.atan()).abs() < 1e-14);
+        assert!((angle(-2.0, -0.0) - PI).abs() < 1e-14);
         assert!((angle(-1.0, -1.0) + 0.75 * PI).abs() < 1e-14 && (angle(-0.5, 0.0) - PI).abs() < 1e-14);
         let length: f64 = bend.stretches(0.3, 0.1).map(|s| s.length).sum();
         assert!((length - (0.7 + 5.0_f64.sqrt())).abs() < 1e-14);

@@ -46,11 +46,12 @@ impl Gauge<'_> {
         zone.center_on_crack(h);
         zone.take_off_mean_velocity();
         let Some(tip) = self.material_at_tip(&zone) else { return Vec::new() };
+        let opening = moment.opening(cracks, id, zone.into);
         let read = |&cells: &f64| {
             let radius = cells * h;
             let found = domain_integrals(&zone, self.elastic, tip, h, radius, true);
             let modes = StressIntensity { mode_1: found.mode_1, mode_2: found.mode_2 };
-            let contour = self.circle_j(&zone, radius);
+            let contour = self.circle_j(&zone, opening, radius);
             ContourReading {
                 crack: id.crack as u32,
                 end: id.end,

@@ -11,7 +11,7 @@ use crate::tip::contour::{Contour, ContourHalf, ContourSample};
 use crate::tip::contours::KERNEL_REACH;
 use crate::tip::domain::{domain_integrals, release_rate};
 use crate::tip::reciprocal::{Setting, reciprocal_integrals};
-use crate::tip::zone::{QuadraturePoint, TipZone};
+use crate::tip::zone::{Opening, QuadraturePoint, TipZone};
 use fissure_scene::{JMethod, Matrix, ModeSplit, Point, Scene, Vector};
 use std::convert::Infallible;
 use std::f64::consts::PI;
@@ -96,7 +96,7 @@ impl Gauge<'_> {
                 (found.j_integral, found)
             }
             JMethod::Contour => {
-                let j = self.contour_j(&zone, radius);
+                let j = self.contour_j(&zone, moment.opening(cracks, id, zone.into), radius);
                 let found =
                     if settings.mode_split == ModeSplit::Interaction { domain(reach) } else { Default::default() };
                 (j, found)
@@ -104,7 +104,8 @@ impl Gauge<'_> {
         };
         let mut split = match settings.mode_split {
             ModeSplit::OpeningDisplacement => {
-                StressIntensity::from_opening(j_integral, zone.opening, elastic.effective_modulus)
+                let opening = moment.opening(cracks, id, zone.into);
+                StressIntensity::from_opening(j_integral, opening.apart, elastic.effective_modulus)
             }
             ModeSplit::Interaction => StressIntensity { mode_1: found.mode_1, mode_2: found.mode_2 },
         };
@@ -253,19 +254,16 @@ impl Gauge<'_> {
     }
 
     /// J along the crack by a contour, with the inertia within it where the scene asks for that.
-    fn contour_j(&self, zone: &TipZone, radius: f64) -> f64 {
-        let j = self.circle_j(zone, radius);
+    fn contour_j(&self, zone: &TipZone, opening: Opening, radius: f64) -> f64 {
+        let j = self.circle_j(zone, opening, radius);
         if self.scene.solver.area_term { j + area_term(zone, radius) } else { j }
     }
 
     /// J along the crack by the thesis' contour: 16 segments, values by kernel averages of the particles on the same
     /// side (its eq. 25 to 28).
-    pub(super) fn circle_j(&self, zone: &TipZone, radius: f64) -> f64 {
-        let opening = if zone.opening_distance > 0.0 {
-            zone.opening.y.max(0.0) * (radius / zone.opening_distance).sqrt()
-        } else {
-            0.0
-        };
+    pub(super) fn circle_j(&self, zone: &TipZone, opening: Opening, radius: f64) -> f64 {
+        let Opening { apart, distance } = opening;
+        let opening = if distance > 0.0 { apart.y.max(0.0) * (radius / distance).sqrt() } else { 0.0 };
         let lower = Point::new(-radius, -0.5 * opening);
         let upper = Point::new(-radius, 0.5 * opening);
         let contour = Contour::new(Point::origin(), radius, lower, upper);

@@ -66,7 +66,7 @@ pub(crate) fn reciprocal_integrals(
     let inner = INNER_RADIUS * cell_size;
     let q_at = |place: Point| weight(place.coords, inner, outer).0;
     let fields = |place: Vector, side: Option<Side>| {
-        dual_fields(place.norm(), Bend::angle(place.into(), side), tip_material.mu, tip_material.kolosov)
+        dual_fields(place, Bend::is_beyond(place, side), tip_material.mu, tip_material.kolosov)
     };
     let face_reach = FACE_REACH * cell_size;
     let mut points: Vec<Sided<'_>> = Vec::with_capacity(zone.points.len());

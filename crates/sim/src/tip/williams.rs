@@ -33,7 +33,7 @@ impl TipField {
 #[inline]
 pub fn williams_fields(place: Vector, mu: f64, kolosov: f64) -> [TipField; 2] {
     let radius = place.norm();
-    let (s, c) = (0.5 * place.y.atan2(place.x)).sin_cos();
+    let (s, c) = half_angle(place, radius);
     let (s3, c3) = (s * (3.0 - 4.0 * s * s), c * (4.0 * c * c - 3.0));
     let size = 1.0 / (2.0 * PI * radius).sqrt();
     let reach = (radius / (2.0 * PI)).sqrt() / (2.0 * mu);
@@ -57,6 +57,19 @@ pub fn williams_fields(place: Vector, mu: f64, kolosov: f64) -> [TipField; 2] {
     ]
 }
 
+/// Sine and cosine of half the angle from e1 to `place`, which is `radius` away [m]; that of a place with y = -0 and
+/// x < 0 is -π/2.
+///
+/// cos²(θ/2) = (1 + cos θ)/2, sin²(θ/2) = (1 - cos θ)/2: the larger of the two has all its digits, and the other one is
+/// sin θ/2 over it.
+#[inline]
+fn half_angle(place: Vector, radius: f64) -> (f64, f64) {
+    let larger = (0.5 + 0.5 * (place.x.abs() / radius)).sqrt();
+    let smaller = 0.5 * place.y.abs() / (radius * larger);
+    let (s, c) = if place.x < 0.0 { (larger, smaller) } else { (smaller, larger) };
+    (s.copysign(place.y), c)
+}
+
 /// Displacement gradient from stress (Hooke: 2μ ε = σ - (3-κ)/4 tr σ I) and rotation [rad].
 fn gradient(stress: &Matrix, rotation: f64, mu: f64, kolosov: f64) -> Matrix {
     let strain = (stress - 0.25 * (3.0 - kolosov) * stress.trace() * Matrix::identity()) / (2.0 * mu);
@@ -72,15 +85,19 @@ pub(crate) struct DualField {
     pub(crate) stress: Matrix,
 }
 
-/// The derivatives along e1 of Williams' fields of modes I and II at unit stress intensity, at `radius` [m] from the
-/// tip and at `angle` from e1 [rad], which may go on beyond ±π: the field is continued there.
+/// The derivatives along e1 of Williams' fields of modes I and II at unit stress intensity, at `place` [m] from the
+/// tip. `is_beyond`: the angle from e1 goes on beyond ±π, and the field is continued there.
 ///
 /// With z = r e^(iθ), φ' = c/(2√(2πz)) of the fields, (c, s) = (1, 1) for mode I and (−i, −1) for mode II:
 /// f = φ', g = ψ' = s f − z f'; 2μ (U_1 + i U_2) = κ f − z conj(f') − conj(g);
 /// S_11 + S_22 = 4 Re f', S_22 − S_11 + 2i S_12 = 2 (conj(z) f'' + g'). Source: Muskhelishvili 1953.
-pub(crate) fn dual_fields(radius: f64, angle: f64, mu: f64, kolosov: f64) -> [DualField; 2] {
-    let z = Complex::from_polar(radius, angle);
-    let root = Complex::from_polar(0.5 / (2.0 * PI * radius).sqrt(), -0.5 * angle);
+pub(crate) fn dual_fields(place: Vector, is_beyond: bool, mu: f64, kolosov: f64) -> [DualField; 2] {
+    let radius = place.norm();
+    let z = Complex::new(place.x, place.y);
+    // A whole turn changes the sign of √z.
+    let size = (if is_beyond { -0.5 } else { 0.5 }) / (2.0 * PI * radius).sqrt();
+    let (s, c) = half_angle(place, radius);
+    let root = Complex::new(size * c, -size * s);
     [(Complex::new(1.0, 0.0), 1.0), (Complex::new(0.0, -1.0), -1.0)].map(|(c, s)| {
         let f = c * root;
         let f_1 = -f / (z * 2.0);
@@ -287,16 +304,35 @@ mod tests {
         let m = elastic(0.3, PlaneState::Strain);
         let fields = |x: Vector| williams_fields(x, m.mu, m.kolosov);
         for x in places() {
-            let (radius, angle) = (x.norm(), x.y.atan2(x.x));
-            for turns in [-1.0, 0.0, 1.0] {
-                let sign = if turns == 0.0 { 1.0 } else { -1.0 };
-                let found = dual_fields(radius, angle + 2.0 * PI * turns, m.mu, m.kolosov);
+            for is_beyond in [false, true] {
+                let sign = if is_beyond { -1.0 } else { 1.0 };
+                let found = dual_fields(x, is_beyond, m.mu, m.kolosov);
                 for mode in 0..2 {
                     let by_x = fields(x)[mode].displacement_gradient.column(0) * sign;
                     assert!((found[mode].displacement - by_x).norm() < 1e-12, "{x} {mode}");
                     let stress = central(|y| fields(y)[mode].stress, x, 0) * sign;
                     assert!((found[mode].stress - stress).norm() < 1e-8 * (1.0 + stress.norm()), "{x} {mode}");
                 }
+            }
+        }
+    }
+
+    /// Truth: the sine and cosine of half the angle, on both faces and so near to them that one of the two is next to
+    /// nothing too.
+    #[test]
+    fn half_an_angle_has_all_its_digits() {
+        let near = [0.0, -0.0, 1e-200, -1e-200, 1e-20, -1e-20, 1e-9, -1e-9, 1e-3, -1e-3].map(|y| (-1.0, y));
+        let around = (0..1000).map(|k| (0.0063 * f64::from(k)).sin_cos());
+        for (x, y) in near.into_iter().chain(near.map(|(x, y)| (-x, y))).chain(around) {
+            for size in [1e-9, 1.0, 3e4] {
+                let place = Vector::new(x * size, y * size);
+                let (s, c) = half_angle(place, place.norm());
+                let (sine, cosine) = (0.5 * y.atan2(x)).sin_cos();
+                assert!((s - sine).abs() <= 4e-16 && (c - cosine).abs() <= 4e-16, "{x} {y}: {s} {c}");
+                assert_eq!(s.is_sign_negative(), y.is_sign_negative(), "{x} {y}");
+                // What the angle itself is rounded to is all of what is left of a cosine next to nothing.
+                let least = if x < 0.0 { 0.5 * (y / x).abs() } else { cosine };
+                assert!(y.abs() > 1e-8 || (c - least).abs() <= 1e-15 * least, "{x} {y}: {c}");
             }
         }
     }

@@ -19,10 +19,8 @@ pub(crate) struct TipZone {
     pub(crate) face_loads: Vec<FaceLoad>,
     /// The crack behind the tip, where it has a kink near; none where it has not, and in the updated formulation.
     pub(crate) bend: Option<Bend>,
-    /// Opening (x_left − x_right) in the tip frame, taken behind the tip: (sliding, opening) [m]. Left is the +e2 side.
-    pub(crate) opening: Vector,
-    /// Distance behind the tip at which the opening was taken [m].
-    pub(crate) opening_distance: f64,
+    /// From the world into the frame of the tip, less the turn of what is around it.
+    pub(crate) into: Matrix,
     /// Whether the points end where the crack is drawn, rather than midway between rows of particles.
     pub(crate) follows_line: bool,
 }
@@ -73,6 +71,15 @@ impl TipZone {
             self.points.iter_mut().for_each(|p| p.place.y -= middle);
         }
     }
+}
+
+/// How far the faces are apart behind a tip.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Opening {
+    /// x_left − x_right in the tip frame: (sliding, opening) [m]. Left is the +e2 side.
+    pub(crate) apart: Vector,
+    /// Distance behind the tip at which it was taken [m]; 0 where there is none.
+    pub(crate) distance: f64,
 }
 
 /// What the faces of a crack do to each other around one place behind a tip.

@@ -16,7 +16,7 @@ use crate::crack::crossing::Side;
 use crate::solver::Observed;
 use crate::tip::bend::Bend;
 use crate::tip::frame::{LineAround, tip_of, turn};
-use crate::tip::zone::{FaceContact, FaceLoad, QuadraturePoint, TipZone};
+use crate::tip::zone::{FaceContact, FaceLoad, Opening, QuadraturePoint, TipZone};
 use fissure_plane::{Matrix, Point, Vector};
 use fissure_scene::End;
 
@@ -51,7 +51,6 @@ impl Observed for Look<'_> {
         let around = LineAround::new(cracks, id, ahead, radius, |crack, point| cracks[crack].points[point]);
         let side_of = |place: Point| around.side_of(place);
         let (points, frame, [back, back_minus_one]) = self.points_around(cracks, (id, ahead), radius, side_of);
-        let (opening, opening_distance) = self.opening(cracks, id, frame * back);
         let into = frame * back;
         let trail = cracks.trail(id);
         let forces = trail.iter().flat_map(|&stretch| {
@@ -90,7 +89,45 @@ impl Observed for Look<'_> {
             let behind = cracks.behind(id, beyond);
             Bend::new(behind.into_iter().rev().map(|place| Point::from(frame * (place - tip))).collect())
         });
-        TipZone { points, contacts, face_loads, bend, opening, opening_distance, follows_line: lattice.has_ties() }
+        TipZone { points, contacts, face_loads, bend, into, follows_line: lattice.has_ties() }
+    }
+
+    fn opening(&self, cracks: &Cracks, id: TipId, into: Matrix) -> Opening {
+        let line = cracks.of(id);
+        // 1 to 3 cells behind the tip: nearer, the tip's own discretisation shows; farther, the next term of the
+        // series.
+        let wanted = 1.5 * self.lattice.grid.cell_size;
+        let n = line.points.len();
+        let mut distance = 0.0;
+        let from_tip = |k: usize| if id.end == End::End { n - 1 - k } else { k };
+        for w in (0..n - 1).map(|k| [from_tip(k), from_tip(k + 1)]) {
+            let (from, to) = (line.points[w[0]], line.points[w[1]]);
+            let length = (to - from).norm();
+            if distance + length >= wanted {
+                let t = (wanted - distance) / length;
+                let jump = |k: usize| {
+                    let [above, below] = &self.probes.faces[id.crack];
+                    above[k].value(&self.motion.displacement) - below[k].value(&self.motion.displacement)
+                };
+                // The probe between two crack points, a hair beside the crack.
+                let place = from + (to - from) * t;
+                let tangent = (to - from) / length;
+                let hair = Vector::new(-tangent.y, tangent.x) * (1e-6 * self.lattice.grid.cell_size);
+                // Seen from the tip looking ahead, left and right are the other way round.
+                let [left, right] = [-hair, hair];
+                let value = |offset: Vector| -> Option<Vector> {
+                    let probe = self.lattice.probe(line.body, place, place + offset);
+                    (!probe.entries.is_empty()).then(|| probe.value(&self.motion.displacement))
+                };
+                if let (Some(a), Some(b)) = (value(left), value(right)) {
+                    return Opening { apart: into * (a - b), distance: wanted };
+                }
+                let sign = left_of_tip(id.end).sign();
+                return Opening { apart: into * (jump(w[1]) * sign), distance: distance + length };
+            }
+            distance += length;
+        }
+        Opening::default()
     }
 
     fn zone_without_sides(&self, cracks: &Cracks, id: TipId, radius: f64) -> Option<TipZone> {
@@ -178,45 +215,6 @@ impl Look<'_> {
             }
         }
         (points, frame, [back, back_minus_one])
-    }
-
-    /// Opening of the faces some way behind a tip, in the tip frame, and that distance.
-    fn opening(&self, cracks: &Cracks, id: TipId, into: Matrix) -> (Vector, f64) {
-        let line = cracks.of(id);
-        // 1 to 3 cells behind the tip: nearer, the tip's own discretisation shows; farther, the next term of the
-        // series.
-        let wanted = 1.5 * self.lattice.grid.cell_size;
-        let n = line.points.len();
-        let mut distance = 0.0;
-        let from_tip = |k: usize| if id.end == End::End { n - 1 - k } else { k };
-        for w in (0..n - 1).map(|k| [from_tip(k), from_tip(k + 1)]) {
-            let (from, to) = (line.points[w[0]], line.points[w[1]]);
-            let length = (to - from).norm();
-            if distance + length >= wanted {
-                let t = (wanted - distance) / length;
-                let jump = |k: usize| {
-                    let [above, below] = &self.probes.faces[id.crack];
-                    above[k].value(&self.motion.displacement) - below[k].value(&self.motion.displacement)
-                };
-                // The probe between two crack points, a hair beside the crack.
-                let place = from + (to - from) * t;
-                let tangent = (to - from) / length;
-                let hair = Vector::new(-tangent.y, tangent.x) * (1e-6 * self.lattice.grid.cell_size);
-                // Seen from the tip looking ahead, left and right are the other way round.
-                let [left, right] = [-hair, hair];
-                let value = |offset: Vector| -> Option<Vector> {
-                    let probe = self.lattice.probe(line.body, place, place + offset);
-                    (!probe.entries.is_empty()).then(|| probe.value(&self.motion.displacement))
-                };
-                if let (Some(a), Some(b)) = (value(left), value(right)) {
-                    return (into * (a - b), wanted);
-                }
-                let sign = left_of_tip(id.end).sign();
-                return (into * (jump(w[1]) * sign), distance + length);
-            }
-            distance += length;
-        }
-        (Vector::zeros(), 0.0)
     }
 }
 

@@ -55,11 +55,11 @@ use crate::crack::cracks::{Cracks, TipId};
 use crate::particles::Particles;
 use crate::saved;
 use crate::solver::{Continuation, Observed, Release, SlidingTips, Snapshot, Solver, SolverEnergies};
-use crate::tip::zone::TipZone;
+use crate::tip::zone::{Opening, TipZone};
 use colliders::Colliders;
 use contact::{Contacts, FaceForces};
 use field_vectors::FieldVectors;
-use fissure_plane::{Point, Vector};
+use fissure_plane::{Matrix, Point, Vector};
 use fissure_scene::{CrackEnd, CrackFrame, OutlineFrame, ParticleFrame, Scene};
 use lattice::{Lattice, Layout};
 use loads::Loads;
@@ -507,6 +507,10 @@ impl Observed for Total {
 
     fn tip_zone(&self, cracks: &Cracks, id: TipId, radius: f64) -> TipZone {
         self.look(0.0).tip_zone(cracks, id, radius)
+    }
+
+    fn opening(&self, cracks: &Cracks, id: TipId, into: Matrix) -> Opening {
+        self.look(0.0).opening(cracks, id, into)
     }
 
     fn tip_now(&self, cracks: &Cracks, id: TipId) -> (Point, Vector) {

@@ -6,7 +6,7 @@ use super::tracer::SIDES;
 use crate::crack::cracks::{Cracks, TipId};
 use crate::solver::Observed;
 use crate::tip::frame::{LineAround, tip_of, turn};
-use crate::tip::zone::{FaceContact, FaceLoad, QuadraturePoint, TipZone};
+use crate::tip::zone::{FaceContact, FaceLoad, Opening, QuadraturePoint, TipZone};
 use fissure_scene::{End, Matrix, Point, Vector};
 
 /// The solver in the middle of a step: positions, deformations and accelerations of the step's beginning; velocities on
@@ -30,6 +30,10 @@ impl Observed for MidStep<'_> {
         self.solver.zone(cracks, id, radius, Some(self.time_step))
     }
 
+    fn opening(&self, _: &Cracks, id: TipId, into: Matrix) -> Opening {
+        self.solver.opening_of(id, into)
+    }
+
     fn tip_now(&self, cracks: &Cracks, id: TipId) -> (Point, Vector) {
         self.solver.tip_now(cracks, id)
     }
@@ -43,6 +47,10 @@ impl Observed for Updated {
 
     fn tip_zone(&self, cracks: &Cracks, id: TipId, radius: f64) -> TipZone {
         self.zone(cracks, id, radius, None)
+    }
+
+    fn opening(&self, _: &Cracks, id: TipId, into: Matrix) -> Opening {
+        self.opening_of(id, into)
     }
 
     fn tip_now(&self, cracks: &Cracks, id: TipId) -> (Point, Vector) {
@@ -89,19 +97,15 @@ impl Updated {
         let turned = turn(2.0 + mean.m11 + mean.m22, mean.m21 - mean.m12);
         let point = |(p, h)| self.quadrature_point(&axes, p, h, turned, time_step);
         let points = found.into_iter().map(point).collect();
-        let wanted = OPENING_DISTANCE * self.setup.scene.cell_size;
-        let (opening, opening_distance) = self.faces.cracks[id.crack].opening(id.end, wanted);
         let contacts = self.contacts_around(&axes, radius);
         let face_loads = self.face_loads(&axes, cracks, radius, turned.0);
-        TipZone {
-            points,
-            contacts,
-            face_loads,
-            bend: None,
-            opening: axes.frame * opening,
-            opening_distance,
-            follows_line: false,
-        }
+        TipZone { points, contacts, face_loads, bend: None, into: axes.frame, follows_line: false }
+    }
+
+    fn opening_of(&self, id: TipId, into: Matrix) -> Opening {
+        let wanted = OPENING_DISTANCE * self.setup.scene.cell_size;
+        let (apart, distance) = self.faces.cracks[id.crack].opening(id.end, wanted);
+        Opening { apart: into * apart, distance }
     }
 
     /// A particle with H = `h` in the frame of a tip whose surroundings have `turned` by (R, R − I).
