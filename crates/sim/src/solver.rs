@@ -3,6 +3,7 @@
 use crate::SimulationError;
 use crate::boundary::supports::Reaction;
 use crate::crack::cracks::{Cracks, TipId};
+use crate::tip::side_by_side::FreeZone;
 use crate::tip::zone::{Opening, TipZone};
 use fissure_scene::{CrackFrame, Matrix, OutlineFrame, ParticleFrame, Point, Vector};
 
@@ -125,9 +126,9 @@ pub(crate) trait Observed: Sync {
     /// The opening behind a tip, and the distance at which it was taken; `into`: [`TipZone::into`].
     fn opening(&self, cracks: &Cracks, id: TipId, into: Matrix) -> Opening;
 
-    /// As [`Observed::tip_zone`], but all points are said to be above the crack: what J does not ask for. None where
-    /// faces do something to each other or something presses on them.
-    fn zone_without_sides(&self, _cracks: &Cracks, _id: TipId, _radius: f64) -> Option<TipZone> {
+    /// As [`Observed::tip_zone`], side by side. None where something presses on faces from outside, where points do not
+    /// end where the crack is drawn, and, but `with_contacts`, where faces do something to each other.
+    fn free_zone(&self, _cracks: &Cracks, _id: TipId, _radius: f64, _with_contacts: bool) -> Option<FreeZone> {
         None
     }
 

@@ -17,7 +17,7 @@
 use crate::crack::crossing::Side;
 use crate::material::elastic::Elastic;
 use crate::tip::face_terms::FaceTerms;
-use crate::tip::zone::{QuadraturePoint, TipZone};
+use crate::tip::zone::{FaceContact, QuadraturePoint, TipZone};
 use crate::williams_fields;
 use fissure_scene::Vector;
 use std::f64::consts::PI;
@@ -59,7 +59,7 @@ pub(super) const INNER_RADIUS: f64 = 1.0;
 /// beside them.
 pub(super) const OF_TIP: f64 = 1.5;
 /// Particles within this distance, in cells, tell how the jump across the crack changes.
-const JUMP_REACH: f64 = 0.75;
+pub(super) const JUMP_REACH: f64 = 0.75;
 
 /// Integrals over the disc of radius `outer` [m]. `dynamic`: with the area terms of inertia.
 pub(crate) fn domain_integrals(
@@ -97,38 +97,51 @@ pub(crate) fn domain_integrals(
     let faces = FaceTerms::of(zone, tip_material, OF_TIP * cell_size, outer, q_behind);
     j -= faces.far;
     (0..2).for_each(|mode| m[mode] -= faces.mutual[mode]);
-    // What the contacts nearest to the tip feel of the jump is that of the tip's own field.
-    let mut of_tip = 0.0;
     let opened = m[0] > 0.0;
-    let mut pressed = false;
-    for contact in zone.contacts.iter().filter(|c| c.behind > -cell_size && c.behind < outer + cell_size) {
+    let reach = JUMP_REACH * cell_size;
+    let slope = |behind: f64| slope_of_sliding(&zone.points, behind, reach);
+    let taken = take_contacts(&zone.contacts, tip_material, [cell_size, outer], (&mut j, &mut m), slope);
+    let half_modulus = 0.5 * tip_material.effective_modulus;
+    let [mode_1, mode_2] = m.map(|m| half_modulus * m);
+    j -= taken.of_tip * mode_2 + faces.near([mode_1, mode_2]);
+    DomainIntegrals { j_integral: j, mode_1, mode_2, closed: taken.pressed && !opened }
+}
+
+/// What contacts take at the tip.
+pub(super) struct TakenByContacts {
+    /// Of J, by K_II [√m].
+    pub(super) of_tip: f64,
+    /// Whether faces press on each other there.
+    pub(super) pressed: bool,
+}
+
+/// Takes what contacts do off J, but for that at the tip, and off the interaction integrals; `slope_of_sliding`: at a
+/// distance behind the tip.
+pub(super) fn take_contacts(
+    contacts: &[FaceContact],
+    tip_material: &Elastic,
+    [cell_size, outer]: [f64; 2],
+    (j, m): (&mut f64, &mut [f64; 2]),
+    slope_of_sliding: impl Fn(f64) -> f64,
+) -> TakenByContacts {
+    let inner = INNER_RADIUS * cell_size;
+    let q_behind = |r: f64| weight(Vector::new(-r, 0.0), inner, outer).0;
+    // What the contacts nearest to the tip feel of the jump is that of the tip's own field.
+    let mut taken = TakenByContacts { of_tip: 0.0, pressed: false };
+    for contact in contacts.iter().filter(|c| c.behind > -cell_size && c.behind < outer + cell_size) {
         let spread = spread(contact.behind, cell_size, q_behind);
         // Across Williams' faces the jump is (8/E') √(r/2π), of u_2 in mode I and of u_1 in mode II.
         let slope = -4.0 / ((2.0 * PI).sqrt() * tip_material.effective_modulus) * spread.inverse_root;
         m[0] -= contact.force.y * slope;
         m[1] -= contact.force.x * slope;
         if contact.behind < OF_TIP * cell_size {
-            of_tip += contact.force.x * slope;
-            pressed |= contact.force.y > 0.0;
+            taken.of_tip += contact.force.x * slope;
+            taken.pressed |= contact.force.y > 0.0;
         } else {
-            let reach = JUMP_REACH * cell_size;
-            j -= spread.weight * contact.force.x * slope_of_sliding(&zone.points, contact.behind, reach);
+            *j -= spread.weight * contact.force.x * slope_of_sliding(contact.behind);
         }
     }
-    let half_modulus = 0.5 * tip_material.effective_modulus;
-    let [mode_1, mode_2] = m.map(|m| half_modulus * m);
-    j -= of_tip * mode_2 + faces.near([mode_1, mode_2]);
-    DomainIntegrals { j_integral: j, mode_1, mode_2, closed: pressed && !opened }
-}
-
-/// J over the disc of radius `outer` [m] around a tip whose faces nothing presses on [J/m²]: see [`domain_integrals`].
-pub(super) fn release_rate(zone: &TipZone, cell_size: f64, outer: f64, dynamic: bool) -> f64 {
-    let inner = INNER_RADIUS * cell_size;
-    let of = |p: &QuadraturePoint| {
-        let (q, slope) = weight(p.place, inner, outer);
-        if q == 0.0 { 0.0 } else { release_of(p, (q, slope), if dynamic { p.density } else { 0.0 }) }
-    };
-    zone.points.iter().map(of).sum()
+    taken
 }
 
 /// What a point adds to J [J/m], where q and ∇q are `weight`; `inertia`: its density, or none [kg/m³].
@@ -197,11 +210,13 @@ fn beside_crack(place: Vector, side: Side) -> Vector {
     }
 }
 
-/// The place of a particle of some `volume` at which the auxiliary fields stand for it: at least 0.317 √V from the tip,
-/// where 1/√r is as large as its mean over a disc of that area around the tip. At its centre it would be infinite for a
-/// particle that the tip hits.
+/// So far from the tip, in roots of an area, 1/√r is as large as its mean over a disc of that area around the tip [–].
+pub(super) const CORE: f64 = 0.317;
+
+/// The place of a particle of some `volume` at which the auxiliary fields stand for it: not nearer to the tip than its
+/// core. At its centre the fields would be infinite for a particle that the tip hits.
 pub(super) fn out_of_core(place: Vector, volume: f64) -> Vector {
-    let (distance, least) = (place.norm(), 0.317 * volume.sqrt());
+    let (distance, least) = (place.norm(), CORE * volume.sqrt());
     if distance >= least {
         place
     } else if distance > 0.0 {
@@ -217,7 +232,7 @@ mod tests {
     use super::*;
     use crate::tip::bend::Bend;
     use crate::tip::reciprocal::{Setting, reciprocal_integrals};
-    use crate::tip::zone::{FaceContact, FaceLoad};
+    use crate::tip::zone::FaceLoad;
     use fissure_scene::{Material, Matrix, PlaneState, Point};
 
     fn elastic(plane: PlaneState) -> Elastic {

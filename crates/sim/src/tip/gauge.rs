@@ -9,8 +9,9 @@ use crate::material::elastic::Elastic;
 use crate::solver::Observed;
 use crate::tip::contour::{Contour, ContourHalf, ContourSample};
 use crate::tip::contours::KERNEL_REACH;
-use crate::tip::domain::{domain_integrals, release_rate};
+use crate::tip::domain::domain_integrals;
 use crate::tip::reciprocal::{Setting, reciprocal_integrals};
+use crate::tip::side_by_side::Wanted;
 use crate::tip::zone::{Opening, QuadraturePoint, TipZone};
 use fissure_scene::{JMethod, Matrix, ModeSplit, Point, Scene, Vector};
 use std::convert::Infallible;
@@ -75,6 +76,21 @@ impl Gauge<'_> {
             JMethod::Domain => self.domain_radius(moment, cracks, id),
             JMethod::Contour => (settings.j_radius.unwrap_or(NARROW_RADIUS) * h, false, None),
         };
+        let is_plain = settings.j_method == JMethod::Domain && settings.mode_split == ModeSplit::Interaction;
+        if is_plain
+            && kink.is_none()
+            && let Some(mut zone) = moment.free_zone(cracks, id, radius, true)
+        {
+            let Some(elastic) = zone.material_at_tip(self.elastic) else { return Reading::default() };
+            let found = zone.integrals(&Wanted::new(elastic, h, radius, settings.area_term));
+            let split = StressIntensity { mode_1: found.mode_1, mode_2: found.mode_2 };
+            return self.reading(
+                (cracks, id),
+                elastic,
+                (found.j_integral, split, found.closed),
+                (radius, radius_shrunk),
+            );
+        }
         let reach = if settings.j_method == JMethod::Contour { radius + KERNEL_REACH * h } else { radius };
         let mut zone = moment.tip_zone(cracks, id, reach);
         if kink.is_none() {
@@ -102,15 +118,27 @@ impl Gauge<'_> {
                 (j, found)
             }
         };
-        let mut split = match settings.mode_split {
+        let split = match settings.mode_split {
             ModeSplit::OpeningDisplacement => {
                 let opening = moment.opening(cracks, id, zone.into);
                 StressIntensity::from_opening(j_integral, opening.apart, elastic.effective_modulus)
             }
             ModeSplit::Interaction => StressIntensity { mode_1: found.mode_1, mode_2: found.mode_2 },
         };
-        if settings.crack_contact {
-            split = without_overlap(split, found.closed);
+        self.reading((cracks, id), elastic, (j_integral, split, found.closed), (radius, radius_shrunk))
+    }
+
+    /// What the J and the modes found at a tip in the material `elastic` mean, and whether its faces press on each
+    /// other; the radius [m] they were found over, and whether that is smaller than asked for.
+    fn reading(
+        &self,
+        (cracks, id): (&Cracks, TipId),
+        elastic: &Elastic,
+        (j_integral, mut split, closed): (f64, StressIntensity, bool),
+        (radius, radius_shrunk): (f64, bool),
+    ) -> Reading {
+        if self.scene.solver.crack_contact {
+            split = without_overlap(split, closed);
         }
         let known = if j_integral <= 0.0 && self.is_in_neck(cracks, id) {
             split.energy_release_rate(elastic.effective_modulus)
@@ -148,10 +176,10 @@ impl Gauge<'_> {
         if kink.is_some() {
             return f64::INFINITY;
         }
-        let Some(mut zone) = moment.zone_without_sides(cracks, id, radius) else { return f64::INFINITY };
-        zone.take_off_mean_velocity();
-        let Some(elastic) = self.material_at_tip(&zone) else { return f64::INFINITY };
-        let j = release_rate(&zone, self.scene.cell_size, radius, self.scene.solver.area_term);
+        let Some(mut zone) = moment.free_zone(cracks, id, radius, false) else { return f64::INFINITY };
+        let Some(elastic) = zone.material_at_tip(self.elastic) else { return f64::INFINITY };
+        let wanted = Wanted::new(elastic, self.scene.cell_size, radius, self.scene.solver.area_term);
+        let j = zone.integrals(&Wanted { modes: false, ..wanted }).j_integral;
         // A NaN stays one: the square root of the larger of two numbers would be that of 0.
         if j <= 0.0 && self.is_in_neck(cracks, id) {
             return f64::INFINITY;

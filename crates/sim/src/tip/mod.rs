@@ -8,6 +8,7 @@ mod face_terms;
 pub(crate) mod frame;
 pub(crate) mod gauge;
 mod reciprocal;
+pub(crate) mod side_by_side;
 pub(crate) mod stress_intensity;
 pub(crate) mod williams;
 pub(crate) mod zone;

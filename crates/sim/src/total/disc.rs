@@ -24,45 +24,109 @@ pub(super) fn particles_of_disc(
     body: u32,
     (center, radius): (Point, f64),
 ) -> Vec<Found> {
-    let particles = &lattice.particles;
-    let s = particles.spacing;
-    let reach = (radius / s).ceil() as i32 + 1;
-    let middle = (center - particles.anchor) / s;
-    let middle = [middle.x.floor() as i32, middle.y.floor() as i32];
-    let (low, high) = (middle.map(|c| c.saturating_sub(reach)), middle.map(|c| c.saturating_add(reach)));
-    let across = 2 * reach.clamp(0, 64) as usize + 2;
-    let mut found: Vec<Found> = Vec::with_capacity(across * across);
-    let mut whole: Vec<Whole> = Vec::with_capacity(across * across);
+    let disc = Disc::new(lattice, body, center, radius);
+    let mut found: Vec<Found> = Vec::with_capacity(disc.most());
+    let mut whole: Vec<Whole> = Vec::with_capacity(disc.most());
     let mut reader = lattice.reader();
-    particles.lattice().within(low, high).for_each(|(i, j, p)| {
-        if (particles.rest[p] - center).norm_squared() < radius * radius && particles.body[p] == body {
-            let is_whole = lattice.layout.cut.entries_of(p).is_none();
-            let (strain, rates) = if is_whole {
-                whole.push(Whole { slot: found.len(), place: [(i - low[0]) as usize, (j - low[1]) as usize] });
-                Default::default()
-            } else {
-                reader.strain_and_rates(p, motion)
-            };
-            found.push((p, strain, rates));
-        }
+    disc.for_each(&mut |p, place, _| {
+        let is_whole = lattice.layout.cut.entries_of(p).is_none();
+        let (strain, rates) = if is_whole {
+            whole.push(Whole { slot: found.len(), place });
+            Default::default()
+        } else {
+            reader.strain_and_rates(p, motion)
+        };
+        found.push((p, strain, rates));
     });
-    if !whole.is_empty() {
-        let places = Places { anchor: particles.anchor, spacing: s };
+    disc.read(motion, &whole, &mut found);
+    found
+}
+
+/// The particles of a body around a place.
+pub(super) struct Disc<'a> {
+    lattice: &'a Lattice,
+    body: u32,
+    /// [m].
+    center: Point,
+    /// [m].
+    radius: f64,
+    /// The lowest and the highest column and row that it may reach.
+    low: [i32; 2],
+    high: [i32; 2],
+}
+
+/// A particle that no crack cuts.
+pub(super) struct Whole {
+    /// Its number in what takes what it does.
+    pub(super) slot: usize,
+    /// Column and row, counted from the lowest ones.
+    pub(super) place: [usize; 2],
+}
+
+/// Takes what particles do, by their numbers.
+pub(super) trait Taking {
+    /// The displacement gradient of a particle, and how fast it moves.
+    fn take(&mut self, slot: usize, strain: Matrix, rates: ParticleRates);
+}
+
+impl Taking for Vec<Found> {
+    #[inline(always)]
+    fn take(&mut self, slot: usize, strain: Matrix, rates: ParticleRates) {
+        (self[slot].1, self[slot].2) = (strain, rates);
+    }
+}
+
+impl<'a> Disc<'a> {
+    /// Those of `body` within `radius` [m] of `center`.
+    pub(super) fn new(lattice: &'a Lattice, body: u32, center: Point, radius: f64) -> Self {
+        let particles = &lattice.particles;
+        let reach = (radius / particles.spacing).ceil() as i32 + 1;
+        let middle = (center - particles.anchor) / particles.spacing;
+        let middle = [middle.x.floor() as i32, middle.y.floor() as i32];
+        let (low, high) = (middle.map(|c| c.saturating_sub(reach)), middle.map(|c| c.saturating_add(reach)));
+        Self { lattice, body, center, radius, low, high }
+    }
+
+    /// More than it has, unless it is very large.
+    pub(super) fn most(&self) -> usize {
+        let across = self.high[0].saturating_sub(self.low[0]).clamp(0, 128) as usize + 2;
+        across * across
+    }
+
+    /// Calls `visit` with each particle, row by row, its column and row, counted from the lowest ones, and where it
+    /// stands.
+    pub(super) fn for_each(&self, visit: &mut impl FnMut(usize, [usize; 2], Point)) {
+        let &Self { lattice, body, center, radius, low, high } = self;
+        let particles = &lattice.particles;
+        // What need not be read need not be waited for: particles come body by body, and stand in a lattice.
+        let is_alone = particles.body.first() == particles.body.last();
+        let places = self.places();
+        particles.lattice().within(low, high).for_each(|(i, j, p)| {
+            let place = places.at(i, j);
+            if (place - center).norm_squared() < radius * radius && (is_alone || particles.body[p] == body) {
+                visit(p, [(i - low[0]) as usize, (j - low[1]) as usize], place);
+            }
+        });
+    }
+
+    /// Where particles stand.
+    fn places(&self) -> Places {
+        Places { anchor: self.lattice.particles.anchor, spacing: self.lattice.particles.spacing }
+    }
+
+    /// Tells `taking` what those do that no crack cuts.
+    pub(super) fn read(&self, motion: &Motion, whole: &[Whole], taking: &mut impl Taking) {
+        if whole.is_empty() {
+            return;
+        }
+        let &Self { lattice, center, radius, low, high, .. } = self;
+        let places = self.places();
         // Along x that of a column, along y that of a row.
         let stencils: Vec<Stencil> =
             (0..=high[0].saturating_sub(low[0])).map(|k| lattice.stencil(places.at(low[0] + k, low[1] + k))).collect();
         let around = Around::new(lattice, motion, center, radius);
-        run_widest(Reading { around, stencils, whole, found: &mut found });
+        run_widest(Reading { around, stencils, whole, taking });
     }
-    found
-}
-
-/// A particle that no crack cuts.
-struct Whole {
-    /// Its place in what was found.
-    slot: usize,
-    /// Column and row, counted from the lowest ones.
-    place: [usize; 2],
 }
 
 /// What the nodes around a disc do.
@@ -96,14 +160,14 @@ impl Around {
 }
 
 /// Reads particles that no crack cuts.
-struct Reading<'a> {
+struct Reading<'a, T> {
     around: Around,
     stencils: Vec<Stencil>,
-    whole: Vec<Whole>,
-    found: &'a mut [Found],
+    whole: &'a [Whole],
+    taking: &'a mut T,
 }
 
-impl Loop for Reading<'_> {
+impl<T: Taking> Loop for Reading<'_, T> {
     type Output = ();
 
     #[inline(always)]
@@ -116,12 +180,12 @@ impl Loop for Reading<'_> {
     }
 }
 
-impl Reading<'_> {
+impl<T: Taking> Reading<'_, T> {
     /// Of a kernel that reaches `N` nodes along an axis.
     #[inline(always)]
     fn read<const N: usize>(&mut self) {
-        let Self { around: Around { low, width, doing }, stencils, whole, found } = self;
-        for &Whole { slot, place: [column, row] } in &*whole {
+        let Self { around: Around { low, width, doing }, stencils, whole, taking } = self;
+        for &Whole { slot, place: [column, row] } in *whole {
             let (x, y) = (&stencils[column], &stencils[row]);
             let at = (y.first[1] - low[1]) as usize * *width + (x.first[0] - low[0]) as usize;
             let (mut sums, mut slopes) = ([0.0; 8], [[0.0; 4]; 2]);
@@ -140,14 +204,14 @@ impl Reading<'_> {
                 }
             }
             let [by_x, by_y] = slopes;
-            let (_, strain, rates) = &mut found[slot];
-            *strain = Matrix::new(by_x[0], by_y[0], by_x[1], by_y[1]);
-            *rates = ParticleRates {
+            let strain = Matrix::new(by_x[0], by_y[0], by_x[1], by_y[1]);
+            let rates = ParticleRates {
                 displacement: Vector::new(sums[0], sums[1]),
                 velocity: Vector::new(sums[2], sums[3]),
                 velocity_gradient: Matrix::new(by_x[2], by_y[2], by_x[3], by_y[3]),
                 acceleration: Vector::new(sums[4], sums[5]),
             };
+            taking.take(slot, strain, rates);
         }
     }
 }

@@ -16,6 +16,7 @@ use crate::crack::crossing::Side;
 use crate::solver::Observed;
 use crate::tip::bend::Bend;
 use crate::tip::frame::{LineAround, tip_of, turn};
+use crate::tip::side_by_side::FreeZone;
 use crate::tip::zone::{FaceContact, FaceLoad, Opening, QuadraturePoint, TipZone};
 use fissure_plane::{Matrix, Point, Vector};
 use fissure_scene::End;
@@ -52,19 +53,8 @@ impl Observed for Look<'_> {
         let side_of = |place: Point| around.side_of(place);
         let (points, frame, [back, back_minus_one]) = self.points_around(cracks, (id, ahead), radius, side_of);
         let into = frame * back;
-        let trail = cracks.trail(id);
-        let forces = trail.iter().flat_map(|&stretch| {
-            let sign = if stretch.is_backwards() { 1.0 } else { -1.0 };
-            self.contacts.forces(stretch).map(move |(place, force)| (place, force * sign))
-        });
-        let contacts = forces
-            // Elsewhere the crack may have come back behind the tip.
-            .filter(|(place, _)| (place - tip).norm() < radius + 2.0 * lattice.grid.cell_size)
-            .map(|(place, force)| {
-                let place = frame * (place - tip);
-                FaceContact { place, behind: -place.x, force: into * force }
-            })
-            .collect();
+        let turned = |of: FaceContact| FaceContact { force: into * of.force, ..of };
+        let contacts = self.contacts_around(cracks, (id, frame), radius).into_iter().map(turned).collect();
         let beyond = radius + 2.0 * lattice.grid.cell_size;
         let left = left_of_tip(id.end);
         let on_face = |(pressure, pressed): (f64, &Pressed)| {
@@ -130,13 +120,13 @@ impl Observed for Look<'_> {
         Opening::default()
     }
 
-    fn zone_without_sides(&self, cracks: &Cracks, id: TipId, radius: f64) -> Option<TipZone> {
-        let is_pressed = cracks.trail(id).iter().any(|&stretch| self.contacts.forces(stretch).next().is_some());
-        if is_pressed || !self.lattice.has_ties() || self.loads.on_faces(id.crack).next().is_some() {
+    fn free_zone(&self, cracks: &Cracks, id: TipId, radius: f64, with_contacts: bool) -> Option<FreeZone> {
+        let is_pressed = || cracks.trail(id).iter().any(|&stretch| self.contacts.forces(stretch).next().is_some());
+        let is_loaded = self.loads.on_faces(id.crack).next().is_some();
+        if is_loaded || !self.lattice.has_ties() || !with_contacts && is_pressed() {
             return None;
         }
-        let points = self.points_around(cracks, (id, self.ahead(cracks, id)), radius, |_| Side::Above).0;
-        Some(TipZone { points, follows_line: true, ..TipZone::default() })
+        Some(self.free_zone_around(cracks, id, radius))
     }
 
     fn parted_at_tip(&self, id: TipId) -> Option<f64> {
@@ -153,8 +143,30 @@ impl Observed for Look<'_> {
 }
 
 impl Look<'_> {
+    /// What the faces behind a tip do to each other near it, with forces of the world; `frame`: from that into that of
+    /// the tip.
+    pub(super) fn contacts_around(
+        &self,
+        cracks: &Cracks,
+        (id, frame): (TipId, Matrix),
+        radius: f64,
+    ) -> Vec<FaceContact> {
+        let tip = cracks.position(id);
+        let mut near = Vec::new();
+        for stretch in cracks.trail(id) {
+            let sign = if stretch.is_backwards() { 1.0 } else { -1.0 };
+            // Elsewhere the crack may have come back behind the tip.
+            let is_near = |of: &(Point, Vector)| (of.0 - tip).norm() < radius + 2.0 * self.lattice.grid.cell_size;
+            near.extend(self.contacts.forces(stretch).filter(is_near).map(|(place, force)| {
+                let place = frame * (place - tip);
+                FaceContact { place, behind: -place.x, force: force * sign }
+            }));
+        }
+        near
+    }
+
     /// Unit vector ahead of a tip at rest.
-    fn ahead(&self, cracks: &Cracks, id: TipId) -> Vector {
+    pub(super) fn ahead(&self, cracks: &Cracks, id: TipId) -> Vector {
         cracks.ahead(id, DIRECTION_LENGTH * self.lattice.grid.cell_size)
     }
 

@@ -18,6 +18,7 @@ mod cutting;
 mod disc;
 mod edge_means;
 mod field_vectors;
+mod free_zone;
 mod held_points;
 mod lattice;
 mod loads;
