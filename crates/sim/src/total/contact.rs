@@ -77,6 +77,8 @@ struct MeetingPoint {
     /// At rest [m].
     place: Point,
     fields: SmallVec<[FacingFields; 4]>,
+    /// What the fields weigh together [–]: less than one where some nodes around have no fields on both sides.
+    weight: f64,
     /// The largest E' around it [Pa].
     modulus: f64,
     /// Force on the face above in the last step, per unit thickness [N/m].
@@ -296,7 +298,8 @@ impl Contacts {
     #[cfg(test)]
     pub(super) fn gaps(&self, probes: &Probes, cracks: &Cracks, motion: &Motion) -> Vec<[f64; 3]> {
         let of = |(point, [of_slide, _]): (&MeetingPoint, [f64; 2])| {
-            let (normal, gap) = (probes.segment_normal(point.crack, point.segment, motion)?, point.gap(motion));
+            let (normal, gap) =
+                (probes.segment_normal(point.crack, point.segment, motion)?, point.gap_and_speed(motion).0);
             Some([gap.dot(&normal), gap.dot(&left_of(normal)).abs(), of_slide])
         };
         self.points.iter().zip(self.leeways(cracks)).filter_map(of).collect()
@@ -405,7 +408,7 @@ impl Contacts {
         self.points.iter_mut().for_each(|point| point.force = Vector::zeros());
         for meeting in &meetings {
             let point = &mut self.points[meeting.point];
-            point.force = meeting.whole() * (point.total_weight() / kick);
+            point.force = meeting.whole() * (point.weight / kick);
             point.on_faces = masses.part_on_faces(&point.fields);
         }
         self.note_pressed();
@@ -485,19 +488,18 @@ impl Contacts {
         kick: f64,
     ) -> Option<Facing> {
         let point = &self.points[index];
-        let gap = point.gap(motion);
+        let (gap, speed) = point.gap_and_speed(motion);
         // Faces that have come so far apart, sideways or not, touch others than they faced at rest: surfaces do. Of
         // pieces that have turned the normal may point anywhere, and say of faces far apart that they overlap.
-        let in_cells = gap.norm() / (self.cell_size * point.total_weight());
+        let in_cells = gap.norm() / (self.cell_size * point.weight);
         if in_cells > MATCHED && (in_cells > TOGETHER || touching.are_apart(point.crack, point.segment)) {
             return None;
         }
-        let speed = point.speed(motion);
         if gap == Vector::zeros() && speed == Vector::zeros() {
             return None;
         }
         let normal = self.normals.find((point.crack, point.segment), probes, motion)?;
-        let before = point.force * (kick / point.total_weight());
+        let before = point.force * (kick / point.weight);
         let impulse = [before.dot(&normal).max(0.0), before.dot(&left_of(normal))];
         Some(Facing { point: index, gap, speed, normal, impulse })
     }
@@ -557,11 +559,15 @@ impl Meeting {
 }
 
 impl MeetingPoint {
-    /// Displacement of the face above less that of the face below [m].
-    fn gap(&self, motion: &Motion) -> Vector {
-        let apart =
-            |pair: &FacingFields| motion.displacement(pair.above as usize) - motion.displacement(pair.below as usize);
-        self.fields.iter().map(|pair| apart(pair) * pair.weight).sum()
+    /// Displacement of the face above less that of the face below [m], and the same of their velocities [m/s].
+    fn gap_and_speed(&self, motion: &Motion) -> (Vector, Vector) {
+        let (mut gap, mut speed) = (Vector::zeros(), Vector::zeros());
+        for &FacingFields { above, below, weight } in &self.fields {
+            let [above, below] = [above, below].map(|field| field as usize);
+            gap += (motion.displacement(above) - motion.displacement(below)) * weight;
+            speed += (motion.velocity(above) - motion.velocity(below)) * weight;
+        }
+        (gap, speed)
     }
 
     /// The tip that is so near that what the faces do here tells of it: its number among all ends of cracks, and the
@@ -586,11 +592,6 @@ impl MeetingPoint {
     fn speed(&self, motion: &Motion) -> Vector {
         let apart = |pair: &FacingFields| motion.velocity(pair.above as usize) - motion.velocity(pair.below as usize);
         self.fields.iter().map(|pair| apart(pair) * pair.weight).sum()
-    }
-
-    /// What the fields weigh together [–]: less than one where some nodes around have no fields on both sides.
-    fn total_weight(&self) -> f64 {
-        self.fields.iter().map(|pair| pair.weight).sum()
     }
 }
 
@@ -776,6 +777,7 @@ fn add_points_of_node(lattice: &Lattice, node: usize, cracks: &Cracks, forks: &[
             crack,
             segment,
             place: foot,
+            weight: fields.iter().map(|pair| pair.weight).sum(),
             fields,
             modulus: modulus_around(lattice, foot),
             force: Vector::zeros(),
