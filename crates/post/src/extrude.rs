@@ -15,6 +15,10 @@ use fissure_scene::{Point, Vector};
 /// Where a curve that was drawn turns by more than this there is a corner [rad]. Smooth joints of drawn curves are a
 /// degree or two off, as drawing programs and fonts round their control points.
 const CORNER: f64 = 0.1;
+/// Walls of what is cut at rest that were smooth there are smooth, so that their corners stay those of both, unless
+/// these have folded right back: the cosine between their normals. Programs find no normal of their own at such a
+/// corner and lose what files say (Blender 5.0, beyond 178.4 degrees).
+const FOLDED_BACK: f64 = -0.996;
 
 /// How a polygon becomes a solid.
 #[derive(Debug, Clone, Copy)]
@@ -191,14 +195,12 @@ impl<'a> Extrusion<'a> {
         };
         let is_curve = own_turn.is_some() || other_turn.is_some();
         let crease = if is_curve { self.crease_angle.min(CORNER) } else { self.crease_angle };
-        let is_folded = own.dot(&theirs) <= 0.0 && !self.at_rest;
+        let is_folded = own.dot(&theirs) <= if self.at_rest { FOLDED_BACK } else { 0.0 };
         let smooth = !is_folded && source.slot == other_source.slot && sides[0].dot(&sides[1]) >= crease.cos();
         if !smooth {
             return own;
         }
-        // Both edges say the same of a corner that has folded right back: what the edge before it says.
-        let first = if point == edge.a { theirs } else { own };
-        (own + theirs).try_normalize(1e-6).unwrap_or(first)
+        (own + theirs).normalize()
     }
 
     pub(crate) fn source(&self, edge: &Edge) -> &SourceEdge {
@@ -224,4 +226,36 @@ fn turned(direction: Vector, angle: Option<f64>) -> Vector {
 /// Outward unit normal of the wall on `edge`: to its right.
 pub(crate) fn wall_normal(edge: &Edge) -> Vector {
     Vector::new((edge.b.y - edge.a.y) as f64, (edge.a.x - edge.b.x) as f64).normalize()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::boolean::SourceIndex;
+    use crate::common::{options, scene, square};
+    use fissure_scene::Point;
+
+    /// Truth: by hand. A corner of what was straight at rest has one normal for both walls while these are 10 degrees
+    /// apart or more, and one for each once they have folded right back.
+    #[test]
+    fn walls_that_have_folded_right_back_have_a_normal_each() {
+        let scene = scene(square(20.0));
+        let (options, grid) = (options(&scene), Grid::covering(&[Point::new(20.0, 20.0)], 0.0));
+        for (apart, is_one) in [(90.0_f64, true), (10.0, true), (1.0, false)] {
+            let half = (0.5 * apart.to_radians()).tan();
+            let now = [Point::new(0.0, -half), Point::new(1.0, 0.0), Point::new(0.0, half)].map(|p| grid.snap(p));
+            let carried = |k: usize| Carried::within(Point::new(1.0, k as f64), Vector::zeros());
+            let sources = [0, 1].map(|k| SourceEdge {
+                a: now[k],
+                b: now[k + 1],
+                carried: [carried(k), carried(k + 1)],
+                slot: Slot::Inside,
+            });
+            let contour = [0, 1].map(|k| Edge { a: now[k], b: now[k + 1], source: SourceIndex(k as u32) });
+            let plain = Extrusion::plain(grid, &sources, &options, scene.bodies[0].region.bounds());
+            let posts = Extrusion { at_rest: true, ..plain }.posts(&contour, false, &[]);
+            assert_eq!(posts[0][1] == posts[1][0], is_one, "{apart}");
+            assert!(posts.iter().flatten().all(|post| (post.normal.norm() - 1.0).abs() < 1e-12));
+        }
+    }
 }
