@@ -178,6 +178,14 @@ mod tests {
         assert!((angle(-2.0, 0.0) - PI).abs() < 1e-14 && (angle(-2.0, -1.0) - PI - 0.5_f64.atan()).abs() < 1e-14);
         assert!((angle(-2.0, -0.0) - PI).abs() < 1e-14);
         assert!((angle(-1.0, -1.0) + 0.75 * PI).abs() < 1e-14 && (angle(-0.5, 0.0) - PI).abs() < 1e-14);
+        // Beside a crack that comes back ahead of its tip, too; and nothing on e1 itself.
+        for (x, y, of_above, of_below) in
+            [(1.0, -1.0, true, false), (1.0, 1.0, false, true), (1.0, 0.0, false, false), (1.0, -0.0, false, false)]
+        {
+            let place = Vector::new(x, y);
+            let found = [Side::Above, Side::Below].map(|side| Bend::is_beyond(place, Some(side)));
+            assert_eq!(found, [of_above, of_below], "{x} {y}");
+        }
         let length: f64 = bend.stretches(0.3, 0.1).map(|s| s.length).sum();
         assert!((length - (0.7 + 5.0_f64.sqrt())).abs() < 1e-14);
         for stretch in bend.stretches(0.0, 0.25) {
