@@ -17,6 +17,7 @@
 use crate::crack::crossing::Side;
 use crate::material::elastic::Elastic;
 use crate::tip::face_terms::FaceTerms;
+use crate::tip::face_traction::FaceTraction;
 use crate::tip::zone::{FaceContact, QuadraturePoint, TipZone};
 use crate::williams_fields;
 use fissure_scene::Vector;
@@ -126,19 +127,25 @@ pub(super) fn take_contacts(
 ) -> TakenByContacts {
     let inner = INNER_RADIUS * cell_size;
     let q_behind = |r: f64| weight(Vector::new(-r, 0.0), inner, outer).0;
+    // Across Williams' faces the jump is (8/E') √(r/2π), of u_2 in mode I and of u_1 in mode II.
+    let per_root = -4.0 / ((2.0 * PI).sqrt() * tip_material.effective_modulus);
+    let traction = FaceTraction::of(contacts, cell_size, outer);
+    let shut = traction.mean * (per_root * traction.inverse_root(q_behind));
+    m[0] -= shut.y;
+    m[1] -= shut.x;
     // What the contacts nearest to the tip feel of the jump is that of the tip's own field.
-    let mut taken = TakenByContacts { of_tip: 0.0, pressed: false };
+    let mut taken = TakenByContacts { of_tip: shut.x, pressed: false };
     for contact in contacts.iter().filter(|c| c.behind > -cell_size && c.behind < outer + cell_size) {
         let spread = spread(contact.behind, cell_size, q_behind);
-        // Across Williams' faces the jump is (8/E') √(r/2π), of u_2 in mode I and of u_1 in mode II.
-        let slope = -4.0 / ((2.0 * PI).sqrt() * tip_material.effective_modulus) * spread.inverse_root;
-        m[0] -= contact.force.y * slope;
-        m[1] -= contact.force.x * slope;
+        let force = contact.force * (1.0 - traction.part(contact.behind));
+        let slope = per_root * spread.inverse_root;
+        m[0] -= force.y * slope;
+        m[1] -= force.x * slope;
         if contact.behind < OF_TIP * cell_size {
-            taken.of_tip += contact.force.x * slope;
+            taken.of_tip += force.x * slope;
             taken.pressed |= contact.force.y > 0.0;
         } else {
-            *j -= spread.weight * contact.force.x * slope_of_sliding(contact.behind);
+            *j -= spread.weight * force.x * slope_of_sliding(contact.behind);
         }
     }
     taken

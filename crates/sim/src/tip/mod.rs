@@ -5,6 +5,7 @@ pub(crate) mod contour;
 pub(crate) mod contours;
 pub(crate) mod domain;
 mod face_terms;
+mod face_traction;
 pub(crate) mod frame;
 pub(crate) mod gauge;
 mod reciprocal;
