@@ -6,7 +6,9 @@ mod revision;
 use std::path::{Path, PathBuf};
 
 fn main() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    // Where the package is now, not where this script was compiled: clones may share a target folder.
+    let package = std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default();
+    let root = Path::new(&package).join("../..");
     let sources = revision::sources(&root);
     let found = revision::revision(&root, &sources);
     println!("cargo::rustc-env=FISSURE_REVISION={}", found.as_deref().unwrap_or_default());

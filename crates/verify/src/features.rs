@@ -63,7 +63,9 @@ pub const FEATURES: [Feature; 22] = [
     }),
     total("friction of faces", "", |scene| scene.solver.crack_friction = 0.4),
     total("friction of bodies", "", |scene| scene.contact.friction = 0.4),
-    total("a collider far away", "", |scene| scene.colliders.push(far_collider())),
+    total("a collider far away", "its distance from every node at the surface, in every step", |scene| {
+        scene.colliders.push(far_collider());
+    }),
     total("a body far away", "its particles: a quarter more of them", |scene| {
         let mut body = scene.bodies[0].clone();
         body.name = "other".into();
@@ -78,8 +80,8 @@ pub const FEATURES: [Feature; 22] = [
         scene.toughness.push(ToughnessPatch { body: None, kind });
     }),
     total("damping", "", |scene| scene.solver.damping = 1.0),
-    total("gravity", "", |scene| scene.gravity = Vector::new(0.0, -1e-6)),
-    total("a support", "", |scene| {
+    total("gravity", "its work, a sum over all nodes in every step", |scene| scene.gravity = Vector::new(0.0, -1e-6)),
+    total("a support", "what holds its nodes, and its work, in every step", |scene| {
         let selection = Selection::Edge { side: BoxSide::Left, bodies: None };
         scene.supports.push(Support { selection, velocity: [None, Some(0.0)], curve: Default::default() });
     }),
@@ -110,7 +112,9 @@ pub const FEATURES: [Feature; 22] = [
             Some(Plasticity { critical_compression: 0.3, critical_stretch: 0.3, hardening: 0.0 });
     }),
     updated("friction of faces", "", |scene| scene.solver.crack_friction = 0.4),
-    updated("a collider far away", "", |scene| scene.colliders.push(far_collider())),
+    updated("a collider far away", "its distance from nodes and particles, in every step", |scene| {
+        scene.colliders.push(far_collider());
+    }),
 ];
 
 /// Cells along a side of the plate in the total formulation, and in the updated one.

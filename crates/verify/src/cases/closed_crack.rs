@@ -95,10 +95,14 @@ fn problem(degrees: f64, cells: f64, faces: Faces) -> Problem {
 }
 
 /// K_II of a crack along the grid with so many cells along half of it that is pressed together, by what it is without
-/// pressure and contact: as computed, and as it should be. For the first of its tips.
-pub(crate) fn mode_2_of_pressed(cells: f64, friction: f64) -> Result<(f64, f64), SimulationError> {
+/// pressure and contact: as computed at a place, and as it should be. For the first of its tips.
+pub(crate) fn mode_2_of_pressed(
+    cells: f64,
+    friction: f64,
+    placement: Placement,
+) -> Result<(f64, f64), SimulationError> {
     let mode_2 = |faces| {
-        let mut placed = Placed::new(&problem(0.0, cells, faces).scene, Placement::NATURAL)?;
+        let mut placed = Placed::new(&problem(0.0, cells, faces).scene, placement)?;
         while !placed.is_finished() {
             placed.advance()?;
         }

@@ -115,7 +115,7 @@ mod tests {
             ("near-things", 4.0, 4.0, 0.0, 0.015),
             ("near-things", 5.0, 5.0, 0.0, 0.02),
             ("near-things", 2.0, 5.0, 0.05, 0.3),
-            ("pressed", 0.3, 3.0, 0.0, 0.02),
+            ("pressed", 0.3, 3.0, 0.0, 0.035),
             ("toughness-jump", 1.05, 50.0, 0.0, 0.1),
             ("toughness-jump", 1.6, 40.0, 0.0, 0.1),
             ("toughness-jump", 1.4, 60.0, 0.0, 0.1),
