@@ -76,8 +76,7 @@ fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationErr
     }
     if options.places > 1 {
         tally.note(
-            "Waves keep their length in metres where spacings are larger: at the worst place, with cells larger by 3.8 %, that of 20 cells has 19.3. What is lost goes \
-             with the third power of that.",
+            "Waves keep their length in metres wherever they lie: with cells larger by 4 % that of 20 cells has 19.2, and what is lost goes with the third power of that.",
         );
     }
     Ok(())
