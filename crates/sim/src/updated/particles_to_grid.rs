@@ -83,8 +83,15 @@ fn add<const L: usize>(values: &mut [f64], at: usize, added: &[f64; L]) {
                 values[a] += added[a];
             }
         }
-        None => values.iter_mut().zip(added).for_each(|(value, added)| *value += added),
+        None => add_first(values, *added),
     }
+}
+
+/// Adds as many as there is room for. On its own, so that elsewhere what is added need not be in memory.
+#[cold]
+#[inline(never)]
+fn add_first<const L: usize>(values: &mut [f64], added: [f64; L]) {
+    values.iter_mut().zip(added).for_each(|(value, added)| *value += added);
 }
 
 /// The particles of one band that no crack divides, for a kernel of `W` nodes along an axis, `L` numbers side by side.

@@ -88,6 +88,28 @@ pub(super) struct Shares<const W: usize, const L: usize> {
     sheared: [[Numbers; W]; 2],
 }
 
+/// Adds what moves along an axis in the columns, and what is added to that in the row.
+#[inline(always)]
+fn add_moved<const L: usize, const AFFINE: bool>(
+    sums: &mut [f64; L],
+    mass: f64,
+    (moved, turned): (&[f64; L], f64),
+    x: &[f64; L],
+) {
+    for a in 0..L {
+        let still = mass * moved[a];
+        sums[a] += if AFFINE { still + turned * x[a] } else { still };
+    }
+}
+
+/// Adds what pulls along an axis.
+#[inline(always)]
+fn add_pulled<const L: usize>(sums: &mut [f64; L], (pulled, sheared): (f64, f64), dx: &[f64; L], x: &[f64; L]) {
+    for a in 0..L {
+        sums[a] += pulled * dx[a] + sheared * x[a];
+    }
+}
+
 impl<const W: usize, const L: usize> Shares<W, L> {
     pub(super) const NONE: Self = Self {
         lowest: [[0; BATCH]; 2],
@@ -204,24 +226,21 @@ impl<const W: usize, const L: usize> Shares<W, L> {
     /// What the places from `start` up to `end` send to a row: mass, momentum along x and y, force along x and y.
     #[inline(always)]
     fn row<const AFFINE: bool>(&self, b: usize, start: usize, end: usize) -> [[f64; L]; 5] {
-        let mut sums = [[0.0; L]; 5];
+        // Each by its name, not by a number: what is numbered in a loop may be kept in memory.
+        let mut weighed = [0.0; L];
+        let (mut moved_x, mut moved_y, mut pulled_x, mut pulled_y) = (weighed, weighed, weighed, weighed);
         for k in start..end {
             let (x, dx, mass) = (&self.x[k], &self.dx[k], self.mass[b][k]);
             for a in 0..L {
-                sums[0][a] += mass * x[a];
+                weighed[a] += mass * x[a];
             }
-            for axis in 0..2 {
-                let (moved, turned) = (&self.moved[axis][k], self.turned[axis][b][k]);
-                for a in 0..L {
-                    let still = mass * moved[a];
-                    sums[1 + axis][a] += if AFFINE { still + turned * x[a] } else { still };
-                }
-                let (pulled, sheared) = (self.pulled[axis][b][k], self.sheared[axis][b][k]);
-                for a in 0..L {
-                    sums[3 + axis][a] += pulled * dx[a] + sheared * x[a];
-                }
-            }
+            let of = |axis: usize| (&self.moved[axis][k], self.turned[axis][b][k]);
+            add_moved::<L, AFFINE>(&mut moved_x, mass, of(0), x);
+            add_moved::<L, AFFINE>(&mut moved_y, mass, of(1), x);
+            let of = |axis: usize| (self.pulled[axis][b][k], self.sheared[axis][b][k]);
+            add_pulled(&mut pulled_x, of(0), dx, x);
+            add_pulled(&mut pulled_y, of(1), dx, x);
         }
-        sums
+        [weighed, moved_x, moved_y, pulled_x, pulled_y]
     }
 }
