@@ -149,22 +149,23 @@ impl ConstraintSystem {
         let count = self.means.len();
         let tied = responses.iter().filter_map(|(field, _)| of_field.get(field)?.first());
         let first = tied.min().copied().unwrap_or(count);
-        // What an impulse of it does to the means before it.
-        let mut x = vec![0.0; count];
+        // What an impulse of it does to the means before it, from the first one on that it does anything to.
+        let mut values = Vec::with_capacity(count - first + 1);
+        values.resize(count - first, 0.0);
         for &(field, response) in responses {
             for &other in of_field.get(&field).into_iter().flatten() {
                 let entry = self.means[other].entries.iter().find(|&&(f, _)| f == field);
-                x[other] += entry.map_or(0.0, |&(_, w)| w * response);
+                values[other - first] += entry.map_or(0.0, |&(_, w)| w * response);
             }
         }
         for k in first..count {
             let row = &self.rows[k];
             let begin = row.first.max(first);
-            let known: f64 = (begin..k).map(|m| row.values[m - row.first] * x[m]).sum();
-            x[k] = (x[k] - known) / row.diagonal();
+            let before = values[begin - first..k - first].iter().zip(&row.values[begin - row.first..]);
+            let known: f64 = before.map(|(x, l)| l * x).sum();
+            values[k - first] = (values[k - first] - known) / row.diagonal();
         }
-        let left = own - x[first..].iter().map(|l| l * l).sum::<f64>();
-        let mut values = x.split_off(first);
+        let left = own - values.iter().map(|l| l * l).sum::<f64>();
         values.push((left.max(0.0) + RAISED * own).sqrt());
         EnvelopeRow { first, values }
     }

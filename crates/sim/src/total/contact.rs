@@ -214,28 +214,43 @@ impl Contacts {
         pressed.map(|(index, point)| (index as u32, point.force.into(), point.on_faces)).collect()
     }
 
-    /// Lays all points anew, with the forces that they have: a tip slides on between two changes, and with it the end
-    /// of the segment that the points around it were laid on.
+    /// Lays all points anew that may lie otherwise by now, with the forces that they have: a tip slides on between two
+    /// changes, and with it the end of the segment the points around it were laid on.
     pub(super) fn lay_anew(&mut self, lattice: &Lattice, cracks: &Cracks) {
         if self.friction.is_none() {
             return;
         }
-        let Laid { points, idle } = all_points(lattice, cracks);
-        (self.idle, self.lengths) = (idle, lengths(cracks));
-        let before = std::mem::replace(&mut self.points, points);
-        let mut before = before.into_iter().filter(|point| point.force != Vector::zeros()).peekable();
-        let mut begin = 0;
-        while let Some(node) = before.peek().map(|point| point.node) {
-            let own: Vec<MeetingPoint> = std::iter::from_fn(|| before.next_if(|point| point.node == node)).collect();
-            begin += self.points[begin..].partition_point(|point| point.node < node);
-            let count = self.points[begin..].partition_point(|point| point.node == node);
-            for point in own {
+        let stays = Stays::of_slides(cracks);
+        let forks = cracks.forks();
+        self.lengths = lengths(cracks);
+        let before = std::mem::take(&mut self.points);
+        let mut now = Laid { points: Vec::with_capacity(before.len() + 32), idle: Vec::with_capacity(self.idle.len()) };
+        let mut before = before.into_iter().peekable();
+        let mut idle = std::mem::take(&mut self.idle).into_iter().peekable();
+        for node in lattice.fields().divided_nodes() {
+            // Those of nodes that are divided no more are left out.
+            while before.next_if(|point| (point.node as usize) < node).is_some() {}
+            while idle.next_if(|of| (of.node as usize) < node).is_some() {}
+            let own: SmallVec<[MeetingPoint; 2]> =
+                std::iter::from_fn(|| before.next_if(|point| point.node as usize == node)).collect();
+            let own_idle: SmallVec<[Idle; 2]> =
+                std::iter::from_fn(|| idle.next_if(|of| of.node as usize == node)).collect();
+            let is_laid = !own.is_empty() || !own_idle.is_empty();
+            if is_laid && stays.of_node(node, &own, &own_idle, lattice, cracks) {
+                now.points.extend(own.into_iter().map(MeetingPoint::renewed));
+                now.idle.extend(own_idle);
+                continue;
+            }
+            let first = now.points.len();
+            add_points_of_node(lattice, node, cracks, &forks, &mut now);
+            for point in own.into_iter().filter(|point| point.force != Vector::zeros()) {
                 let same = |now: &&mut MeetingPoint| now.crack == point.crack && now.force == Vector::zeros();
-                if let Some(now) = self.points[begin..begin + count].iter_mut().find(same) {
+                if let Some(now) = now.points[first..].iter_mut().find(same) {
                     (now.force, now.on_faces) = (point.force, point.on_faces);
                 }
             }
         }
+        (self.points, self.idle) = (now.points, now.idle);
         self.note_pressed();
     }
 
@@ -252,23 +267,25 @@ impl Contacts {
         let forks = cracks.forks();
         // A point sees nodes of the same stencil, so that what has changed there changes it.
         let reach = (lattice.reach() + 1.0) * lattice.grid.cell_size;
-        let before = std::mem::take(&mut self.points);
-        let mut now = Laid { points: Vec::with_capacity(before.len() + 32), idle: Vec::with_capacity(self.idle.len()) };
-        let mut before = before.into_iter().peekable();
-        let mut idle = std::mem::take(&mut self.idle).into_iter().peekable();
-        let renumbered = |point: MeetingPoint| {
-            let segment = near.segment_now(point.crack, point.segment);
-            MeetingPoint { segment, ..point }
-        };
-        let renumbered_idle = |of: Idle| Idle { segment: near.segment_now(of.crack, of.segment), ..of };
-        for node in near.divided_nodes(lattice, reach) {
+        let nodes = near.divided_nodes(lattice, reach);
+        self.renumber(near);
+        let (Some(&first), Some(&last)) = (nodes.first(), nodes.last()) else { return };
+        // Of nodes before and after these nothing is touched.
+        let outside = |of: u32, node: usize| (of as usize).cmp(&node);
+        let points_after = self.points.split_off(self.points.partition_point(|of| outside(of.node, last).is_le()));
+        let before = self.points.split_off(self.points.partition_point(|of| outside(of.node, first).is_lt()));
+        let idle_after = self.idle.split_off(self.idle.partition_point(|of| outside(of.node, last).is_le()));
+        let idle = self.idle.split_off(self.idle.partition_point(|of| outside(of.node, first).is_lt()));
+        let mut now = Laid { points: Vec::with_capacity(before.len() + 32), idle: Vec::with_capacity(idle.len()) };
+        let (mut before, mut idle) = (before.into_iter().peekable(), idle.into_iter().peekable());
+        for node in nodes {
             let is_before = |other: u32| (other as usize) < node;
-            now.points.extend(std::iter::from_fn(|| before.next_if(|point| is_before(point.node))).map(renumbered));
-            now.idle.extend(std::iter::from_fn(|| idle.next_if(|of| is_before(of.node))).map(renumbered_idle));
-            let own = std::iter::from_fn(|| before.next_if(|point| point.node as usize == node)).map(renumbered);
-            let own: SmallVec<[MeetingPoint; 2]> = own.collect();
-            let own_idle = std::iter::from_fn(|| idle.next_if(|of| of.node as usize == node)).map(renumbered_idle);
-            let own_idle: SmallVec<[Idle; 2]> = own_idle.collect();
+            now.points.extend(std::iter::from_fn(|| before.next_if(|point| is_before(point.node))));
+            now.idle.extend(std::iter::from_fn(|| idle.next_if(|of| is_before(of.node))));
+            let own: SmallVec<[MeetingPoint; 2]> =
+                std::iter::from_fn(|| before.next_if(|point| point.node as usize == node)).collect();
+            let own_idle: SmallVec<[Idle; 2]> =
+                std::iter::from_fn(|| idle.next_if(|of| of.node as usize == node)).collect();
             if stays.of_node(node, &own, &own_idle, lattice, cracks) {
                 // As a new one that takes over from the one before: a force of −0 is one of 0.
                 let taken_over = |point: MeetingPoint| MeetingPoint { force: Vector::zeros() + point.force, ..point };
@@ -287,10 +304,19 @@ impl Contacts {
                 }
             }
         }
-        now.points.extend(before.map(renumbered));
-        now.idle.extend(idle.map(renumbered_idle));
-        (self.points, self.idle) = (now.points, now.idle);
+        self.points.extend(now.points);
+        self.points.extend(points_after);
+        self.idle.extend(now.idle);
+        self.idle.extend(idle_after);
         self.note_pressed();
+    }
+
+    /// Gives all segments the numbers that they have now.
+    fn renumber(&mut self, near: &Near) {
+        if near.has_shifts() {
+            self.points.iter_mut().for_each(|of| of.segment = near.segment_now(of.crack, of.segment));
+            self.idle.iter_mut().for_each(|of| of.segment = near.segment_now(of.crack, of.segment));
+        }
     }
 
     /// Of each point the gap along its normal [m], by how much the faces have slid [m], and the part of that by which
@@ -559,6 +585,11 @@ impl Meeting {
 }
 
 impl MeetingPoint {
+    /// As one that is laid now, and takes over the force that it has, if it has one.
+    fn renewed(self) -> Self {
+        if self.force == Vector::zeros() { Self { force: Vector::zeros(), on_faces: 1.0, ..self } } else { self }
+    }
+
     /// Displacement of the face above less that of the face below [m], and the same of their velocities [m/s].
     fn gap_and_speed(&self, motion: &Motion) -> (Vector, Vector) {
         let (mut gap, mut speed) = (Vector::zeros(), Vector::zeros());
@@ -693,6 +724,12 @@ impl Stays {
             is_known.then_some([at_start + 1, at_end + 1])
         };
         Self { turned, changed: cracks.iter().enumerate().map(changed).collect() }
+    }
+
+    /// What tells the same after tips have slid, which moves nothing but the ends of cracks.
+    fn of_slides(cracks: &Cracks) -> Self {
+        let is_known = cracks.forks().is_empty();
+        Self { turned: Vec::new(), changed: cracks.iter().map(|_| is_known.then_some([1, 1])).collect() }
     }
 
     /// Whether a node keeps its `points` and what is `idle` of it, the numbers of whose segments are those of now.
@@ -859,7 +896,7 @@ mod tests {
     use super::*;
     use crate::crack::cracks::TipId;
     use crate::particles::Particles;
-    use crate::solver::Solver;
+    use crate::solver::{SlidingTips, Solver};
     use crate::test_scenes;
     use fissure_scene::{Formulation, Kernel, TipDivision};
     use proptest::prelude::*;
@@ -939,6 +976,61 @@ mod tests {
                 cracks.grow(id, &[cracks.position(id) + ahead]);
                 total.recut(&cracks, &[id]);
                 assert_nearest(&total, &cracks);
+            }
+        }
+    }
+
+    /// All that is laid, but for what the faces do to each other.
+    fn laid(points: &[MeetingPoint], idle: &[Idle]) -> String {
+        let points: Vec<_> = points.iter().map(|of| (of.node, of.crack, of.segment, of.place, &of.fields)).collect();
+        format!("{points:?} {idle:?}")
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+
+        /// Truth: all laid from nothing. Two tips turn and slide on, one into what the other has cut, with recuts and
+        /// without; what faces did stays with them.
+        #[test]
+        fn what_stays_is_as_laid_anew(
+            kernel in prop::sample::select(vec![Kernel::Bilinear, Kernel::Gimp, Kernel::Cubic]),
+            ends in [0.9..1.8_f64, 2.2..3.1_f64], heights in prop::array::uniform2(1.6..2.4_f64),
+            turns in prop::collection::vec((-1.0..1.0_f64, 0.0..1.0_f64, any::<bool>()), 1..25),
+        ) {
+            let mut scene = test_scenes::free_body(test_scenes::rectangle([0.0, 0.0], [4.0, 4.0]), 0.1);
+            (scene.solver.formulation, scene.solver.kernel) = (Formulation::Total, kernel);
+            scene.solver.tip_division = TipDivision::PartlyCut;
+            scene.solver.crack_contact = true;
+            test_scenes::add_crack(&mut scene, &[[0.0, heights[0]], [0.4, heights[0]], [ends[0], heights[0]]]);
+            test_scenes::add_crack(&mut scene, &[[ends[1], heights[1]], [3.6, heights[1]], [4.0, heights[1]]]);
+            (scene.cracks[0].end_live, scene.cracks[1].start_live) = (true, true);
+            let mut cracks = Cracks::of_scene(&scene);
+            let mut total = Total::new(&scene, Arc::new(Particles::fill(&scene).unwrap()), &cracks).unwrap();
+            for (round, (turn, part, is_first)) in turns.into_iter().enumerate() {
+                let (id, way) = if is_first { (TipId::new(0, End::End), 0.05) } else { (TipId::new(1, End::Start), -0.05) };
+                if cracks.left_of_increment(id).is_none() {
+                    let target = cracks.position(id) + Vector::new(way, way * turn);
+                    cracks.begin_increment(id, target, 1e-3);
+                    total.recut(&cracks, &[id]);
+                }
+                let left = cracks.left_of_increment(id).unwrap_or_default();
+                cracks.slide(id, if part > 0.4 { left } else { part * left });
+                SlidingTips::slide(&mut total, &cracks, id);
+                let Total { lattice, contacts, .. } = &mut total;
+                let forces: FaceForces = (0..contacts.points.len() as u32).map(|k| (k, [f64::from(k % 3), 0.0], 0.5)).collect();
+                contacts.set_forces(&forces).unwrap();
+                let force = |point: &MeetingPoint| ((point.node, point.crack), point.force.x);
+                let before: Vec<_> = contacts.points.iter().map(force).collect();
+                contacts.lay_anew(lattice, &cracks);
+                let anew = all_points(lattice, &cracks);
+                prop_assert_eq!(laid(&contacts.points, &contacts.idle), laid(&anew.points, &anew.idle), "{}", round);
+                for (of, force) in contacts.points.iter().map(force) {
+                    let own: Vec<_> = before.iter().filter(|(other, _)| *other == of).collect();
+                    prop_assert!(own.len() != 1 || own[0].1 == force, "{} {:?}", round, of);
+                }
+                let feels = |point: &MeetingPoint| if point.force.x == 0.0 { 1.0 } else { 0.5 };
+                let is_kept = contacts.points.iter().all(|point| point.on_faces == feels(point));
+                prop_assert!(is_kept);
             }
         }
     }

@@ -37,6 +37,11 @@ impl Near {
         before + self.shift(crack as usize)
     }
 
+    /// Whether segments of any crack have got other numbers.
+    pub(super) fn has_shifts(&self) -> bool {
+        self.shifts.iter().any(|&shift| shift > 0)
+    }
+
     /// By how much the numbers of the points of a crack have moved up.
     pub(super) fn shift(&self, crack: usize) -> u32 {
         self.shifts[crack]

@@ -25,6 +25,9 @@ const PART: f64 = 0.5;
 /// Tips whose distances from a misfit differ by less than this pay for it together [cells].
 const ALIKE: f64 = 1e-9;
 
+/// What two squares have to differ by, as part of them, to differ whatever rounding has done to them.
+const ROUND_OFF: f64 = 1e-12;
+
 /// Somebody who can pay.
 struct Payer {
     id: TipId,
@@ -150,14 +153,21 @@ fn by_column(payers: &[Payer]) -> Vec<(Point, usize)> {
 fn nearest(payers: &[(Point, usize)], place: Point, cell_size: f64) -> SmallVec<[usize; 4]> {
     let far = (REACH + 1.0) * cell_size;
     let mut near: SmallVec<[(usize, f64); 16]> = SmallVec::new();
+    let mut least = f64::INFINITY;
+    // Square of what is farther away than the nearest so far, whatever rounding does [m²].
+    let mut farther = f64::INFINITY;
     let from = payers.partition_point(|payer| payer.0.x < place.x - far);
     for &(payer, k) in payers[from..].iter().take_while(|payer| payer.0.x <= place.x + far) {
         let arm = payer - place;
-        if arm.y.abs() < far {
-            near.push((k, arm.norm() / cell_size));
+        if arm.y.abs() < far && arm.norm_squared() <= farther {
+            let way = arm.norm() / cell_size;
+            near.push((k, way));
+            if way < least {
+                least = way;
+                farther = ((least + ALIKE) * cell_size).powi(2) * (1.0 + ROUND_OFF);
+            }
         }
     }
-    let least = near.iter().map(|of| of.1).fold(f64::INFINITY, f64::min);
     if least > REACH {
         return SmallVec::new();
     }

@@ -46,9 +46,10 @@ impl<'a> Tensors<'a> {
         dtype: Dtype,
         shape: Vec<usize>,
         values: impl Iterator<Item = T> + Clone + 'a,
-        bytes_of: fn(T) -> [u8; N],
+        bytes_of: impl Fn(T) -> [u8; N] + 'a,
     ) {
-        let write = move |bytes: &mut Vec<u8>| values.clone().for_each(|value| bytes.extend(bytes_of(value)));
+        let write =
+            move |bytes: &mut Vec<u8>| values.clone().for_each(|value| bytes.extend_from_slice(&bytes_of(value)));
         self.0.push((name.into(), Tensor { dtype, shape, write: Box::new(write) }));
     }
     fn f64s(&mut self, name: impl Into<String>, shape: Vec<usize>, values: impl Iterator<Item = f64> + Clone + 'a) {
