@@ -114,6 +114,22 @@ fn rings_tell_how_their_curves_run() {
     assert_eq!(half.bodies[0].turns[0].iter().filter(|turn| **turn == [0.0; 2]).count(), 1);
 }
 
+/// Truth: what a browser shows. A page of 200 × 200 mm for 200 × 100 units is filled where the drawing asks for that,
+/// and a square of 10 units is a rectangle.
+#[test]
+fn a_drawing_that_fills_its_page_is_stretched() {
+    for (aspect, height) in [("none", 0.02), ("xMidYMid meet", 0.01)] {
+        let head = format!("width='200mm' height='200mm' viewBox='0 0 200 100' preserveAspectRatio='{aspect}'");
+        let drawing = svg(&head, "<rect id='r' x='100' y='50' width='10' height='10'/>");
+        for scale in ["", "width = 0.2"] {
+            let scene = load_drawing(&drawing, scale, &body("r")).unwrap();
+            let (low, high) = scene.bodies[0].region.bounds();
+            assert_near(low, (0.0, -height), 1e-7);
+            assert_near(high, (0.01, 0.0), 1e-7);
+        }
+    }
+}
+
 /// Truth: 10 mm are 0.01 m, whatever the viewBox counts in.
 #[test]
 fn physical_units_need_no_scale() {

@@ -53,8 +53,12 @@ pub(super) fn scale(
         }
     };
     let from_origin = Affine::translate((-origin[0], -origin[1]));
-    let to_metres = Affine::scale_non_uniform(metres_per_unit, -metres_per_unit) * from_origin * to_pixels.inverse();
-    Ok((to_metres, metres_per_unit * w.max(h)))
+    // Units are as high as they are wide unless the drawing asks for its page to be filled.
+    let [across, _, _, down, ..] = to_pixels.as_coeffs();
+    let stretch = down / across;
+    let to_metres =
+        Affine::scale_non_uniform(metres_per_unit, -metres_per_unit * stretch) * from_origin * to_pixels.inverse();
+    Ok((to_metres, metres_per_unit * w.max(h * stretch)))
 }
 
 fn view_box(root: &roxmltree::Node<'_, '_>) -> Option<[f64; 4]> {
