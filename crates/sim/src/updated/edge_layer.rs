@@ -227,7 +227,7 @@ fn line_outwards(points: &Points, particle: usize, outwards: Vector) -> Vector {
 }
 
 /// Weights as a mean, those of a field together; none of nothing.
-fn mean(mut weights: Vec<(u32, f64)>) -> Option<EdgeMean> {
+pub(super) fn mean(mut weights: Vec<(u32, f64)>) -> Option<EdgeMean> {
     weights.sort_by_key(|(field, _)| *field);
     let total: f64 = weights.iter().map(|(_, w)| w).sum();
     let of_fields = weights.chunk_by(|a, b| a.0 == b.0);

@@ -57,7 +57,9 @@ impl Snapshot for Updated {
     }
 
     fn rayleigh_quotient(&self) -> Option<f64> {
-        // Its forces live on a grid that is laid anew in every step.
+        // Its forces live on a grid that is laid anew in every step. Damped by ω² from the stresses of particles, a
+        // beam comes to rest in twice the steps that it takes with stops at the peaks (`three-holes`, affine PIC, 1.5
+        // cells per inch: 45 thousand for 22): what moves from cell to cell wakes up short waves.
         None
     }
 

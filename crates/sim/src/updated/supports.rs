@@ -1,14 +1,15 @@
 //! Supports as prescribed velocities of edges, nodes and particles.
 
-use super::edge_layer::EdgeLayer;
+use super::edge_layer::{EdgeLayer, mean};
 use super::lattice::Lattice;
 use super::nodes::Nodes;
 use super::points::Points;
 use super::setup::Setup;
 use crate::SimulationError;
 use crate::boundary::constraints::{ConstraintSystem, Held, systems};
-use crate::boundary::edges::edges_of;
+use crate::boundary::edges::{EdgeMean, edges_of};
 use crate::boundary::supports::{Prescribed, Reaction, prescribed};
+use crate::particles::Particles;
 use fissure_scene::{Point, Selection, Support, Vector};
 
 /// A step in which supports hold velocities.
@@ -25,6 +26,8 @@ pub(super) struct HeldStep {
 pub(super) struct Supports {
     /// Particles of each support, chosen at rest.
     held: Vec<Vec<u32>>,
+    /// The same, those near each of its points apart.
+    spots: Vec<Vec<Vec<u32>>>,
     /// Edges of each support.
     edges: Vec<Vec<EdgeLayer>>,
     /// What is held of edges on the grid of this step, along x and along y.
@@ -49,8 +52,11 @@ impl Supports {
             Ok((if edges.is_empty() { selected } else { Vec::new() }, edges))
         };
         let of_supports = scene.supports.iter().enumerate().map(held);
-        let (held, edges) = of_supports.collect::<Result<Vec<_>, SimulationError>>()?.into_iter().unzip();
-        Ok(Self { held, edges, systems: Default::default() })
+        let (held, edges): (Vec<Vec<u32>>, _) =
+            of_supports.collect::<Result<Vec<_>, SimulationError>>()?.into_iter().unzip();
+        let of_support = |(support, held): (&Support, &Vec<u32>)| spots(particles, &support.selection, held);
+        let spots = scene.supports.iter().zip(&held).map(of_support).collect();
+        Ok(Self { held, spots, edges, systems: Default::default() })
     }
 
     /// Whether nothing is held.
@@ -77,7 +83,8 @@ impl Supports {
     /// [J/m] and adds it to `reactions`, one for each support.
     ///
     /// Dragging the other nodes along in part would do so again in every step, and damp the waves at the support: a
-    /// plate pulled at one end, 81 steps, gained 81 % of the work that way, 98 % this way.
+    /// plate pulled at one end, 81 steps, gained 81 % of the work that way, 98 % this way. Spots so small that they
+    /// have no such node are held in the mean of their particles: a beam would sink through one.
     pub(super) fn hold_nodes(
         &mut self,
         setup: &Setup,
@@ -127,20 +134,31 @@ impl Supports {
                 held_mass[field] = 0.0;
             }
         }
-        if self.edges.iter().any(|edges| !edges.is_empty()) {
-            self.lay_edges(setup, points, lattice, fields, &nodes.mass);
+        let of_support = |(spots, fields): (&Vec<Vec<u32>>, &Vec<u32>)| {
+            spots.iter().filter_map(|spot| free_mean(setup, points, lattice, spot, fields)).collect()
+        };
+        let spots: Vec<Vec<EdgeMean>> = self.spots.iter().zip(&fields).map(of_support).collect();
+        if self.edges.iter().any(|edges| !edges.is_empty()) || spots.iter().any(|spots| !spots.is_empty()) {
+            self.lay_means(setup, points, lattice, fields.into_iter().zip(spots), &nodes.mass);
             work += self.hold_edges(setup, step, &nodes.mass, &mut nodes.after, reactions);
         }
         work
     }
 
-    /// Lays edges on the grid of this step, beside the `fields` that each support holds.
-    fn lay_edges(&mut self, setup: &Setup, points: &Points, lattice: &Lattice, fields: Vec<Vec<u32>>, mass: &[f64]) {
-        let held = |(edges, fields): (&Vec<EdgeLayer>, Vec<u32>)| Held {
-            means: edges.iter().flat_map(|edge| edge.means(points, lattice)).collect(),
+    /// Lays edges on the grid of this step, beside the fields and spots that each support holds, `others`.
+    fn lay_means(
+        &mut self,
+        setup: &Setup,
+        points: &Points,
+        lattice: &Lattice,
+        others: impl Iterator<Item = (Vec<u32>, Vec<EdgeMean>)>,
+        mass: &[f64],
+    ) {
+        let held = |(edges, (fields, spots)): (&Vec<EdgeLayer>, (Vec<u32>, Vec<EdgeMean>))| Held {
+            means: edges.iter().flat_map(|edge| edge.means(points, lattice)).chain(spots).collect(),
             fields,
         };
-        let of_support: Vec<Held> = self.edges.iter().zip(fields).map(held).collect();
+        let of_support: Vec<Held> = self.edges.iter().zip(others).map(held).collect();
         let inverse_mass: Vec<f64> = mass.iter().map(|&m| if m > 0.0 { 1.0 / m } else { 0.0 }).collect();
         self.systems = systems(&setup.scene.supports, &of_support, &inverse_mass[..]);
     }
@@ -227,4 +245,33 @@ impl Supports {
         }
         work
     }
+}
+
+/// The particles `held` by a selection, those nearest to each of its points apart.
+fn spots(particles: &Particles, selection: &Selection, held: &[u32]) -> Vec<Vec<u32>> {
+    let Selection::Near { points, .. } = selection else { return vec![held.to_vec()] };
+    let mut spots = vec![Vec::new(); points.len()];
+    for &p in held {
+        let away = |&k: &usize| (particles.rest[p as usize] - points[k]).norm_squared();
+        let nearest = (0..points.len()).min_by(|a, b| away(a).total_cmp(&away(b)));
+        spots[nearest.unwrap_or_default()].push(p);
+    }
+    spots
+}
+
+/// The mean velocity of the particles of a `spot`; none where they reach one of the `fields` that are held as a whole.
+fn free_mean(setup: &Setup, points: &Points, lattice: &Lattice, spot: &[u32], fields: &[u32]) -> Option<EdgeMean> {
+    let mut weights = Vec::new();
+    for &p in spot {
+        let (mass, place) = (setup.particles.mass[p as usize], points.point[p as usize].position);
+        let mut is_held = false;
+        lattice.for_each_entry(p as usize, place, |field, w| {
+            is_held |= w > 0.0 && fields.contains(&(field as u32));
+            weights.push((field as u32, mass * w));
+        });
+        if is_held {
+            return None;
+        }
+    }
+    mean(weights)
 }

@@ -689,3 +689,37 @@ fn particles_are_sorted_by_where_they_are() {
         assert_eq!(lattice.order.of_nodes(0..lattice.grid.len()).len(), points.len());
     }
 }
+
+/// Truth: the drawing, and Newton. Wherever in the cells of a square a support lies that has only one of its particles,
+/// or two such supports in one: what is there moves as it says, and the square takes up the momentum that it gives.
+#[test]
+fn a_support_of_one_particle_holds_it() {
+    let speed = 0.3;
+    for kernel in KERNELS {
+        for (at, other) in [(0.9, None), (2.6, None), (5.1, Some(1.2)), (6.3, Some(5.8))] {
+            let mut scene = free_body(rectangle([0.1, 0.2], [8.0, 8.1]), 0.5);
+            (scene.solver.kernel, scene.solver.transfer) = (kernel, Transfer::Aflip);
+            let particles = Particles::fill(&scene).unwrap();
+            let nearest = |x: f64| {
+                let away = |place: &&Point| (*place - Point::new(x, x)).norm();
+                *particles.rest.iter().min_by(|a, b| away(a).total_cmp(&away(b))).unwrap()
+            };
+            let places: Vec<Point> = [Some(at), other].into_iter().flatten().map(nearest).collect();
+            let selection = Selection::Near { points: places.clone(), radius: 0.01 };
+            scene.supports.push(Support { selection, velocity: [Some(speed), None], curve: always() });
+            let mut solver = Run::new(&scene).solver;
+            solver.lay_grid(&Cracks::of_scene(&scene), 0.0).unwrap();
+            solver.move_nodes(0.0, 1e-3);
+            solver.constrain_nodes(0.0, 1e-3);
+            for (p, point) in
+                solver.points.point.iter().enumerate().filter(|(_, point)| places.contains(&point.position))
+            {
+                let found = solver.source().gather_one(p, point).velocity;
+                assert!((found - Vector::new(speed, 0.0)).norm() < 1e-6, "{kernel:?} {at}: {found}");
+            }
+            let momentum: f64 = solver.nodes.mass.iter().zip(&solver.nodes.after[0]).map(|(m, v)| m * v).sum();
+            let impulse = solver.reactions[0].impulse[0];
+            assert!(impulse > 0.0 && (momentum / impulse - 1.0).abs() < 1e-9, "{momentum} {impulse}");
+        }
+    }
+}

@@ -56,16 +56,20 @@ impl Curve {
         self.name == DEFAULT
     }
 
+    /// Whether it is of the total formulation.
+    pub(super) fn is_total(&self) -> bool {
+        self.name.starts_with("total ")
+    }
+
     /// Whether it is measured in the case that takes minutes a point: the total formulation, the thesis, and of the
-    /// updated formulation the transfers that lose energy, with the quadratic kernel. With the others the beam still
-    /// rings after minutes in the coarsest cells, and it has to rest after every half cell. `quick`: the default alone.
+    /// updated formulation all transfers with the quadratic kernel, and all kernels with the default transfer. `quick`:
+    /// the default alone.
     pub(super) fn is_in_long_case(&self, quick: bool) -> bool {
-        const LOSE_ENERGY: [&str; 2] = ["updated PIC quadratic", "updated APIC quadratic"];
-        let is_updated = self.name.starts_with("updated ");
         match self.family {
             Family::Measure => false,
             _ if quick => self.is_default(),
-            _ => !is_updated || LOSE_ENERGY.contains(&self.name.as_str()),
+            Family::Formulation => true,
+            Family::Transfer => self.is_updated_by("quadratic"),
         }
     }
 

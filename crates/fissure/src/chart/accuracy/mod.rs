@@ -24,6 +24,8 @@ const PLACES_QUICK: usize = 2;
 /// Resolutions that are measured of every curve, however long they take.
 const LEAST_POINTS: usize = 4;
 const LEAST_POINTS_QUICK: usize = 2;
+/// The same of the updated formulation in the case that takes minutes a point.
+const LEAST_POINTS_LONG: usize = 2;
 /// Time goes with the third power of resolution: particles in two dimensions, and steps.
 const GROWTH_OF_TIME: f64 = 3.0;
 
@@ -48,7 +50,11 @@ pub(super) fn chart(charting: &Charting<'_>) -> Result<(), Failure> {
 fn measure(charting: &Charting<'_>, study: &Study, curve: &Curve, table: &mut Table<'_>) -> Result<(), Failure> {
     let most = if charting.quick { MOST_SECONDS_QUICK } else { MOST_SECONDS };
     let most = if curve.is_default() { DEFAULT_GOES_ON * most } else { most };
-    let least = if charting.quick { LEAST_POINTS_QUICK } else { LEAST_POINTS };
+    let least = match study.is_long && !curve.is_total() {
+        _ if charting.quick => LEAST_POINTS_QUICK,
+        true => LEAST_POINTS_LONG,
+        false => LEAST_POINTS,
+    };
     let places = if charting.quick { study.places.min(PLACES_QUICK) } else { study.places };
     let mut last: Option<(f64, f64)> = None;
     for (index, &cells) in study.cells.iter().enumerate() {
