@@ -190,9 +190,10 @@ fn run_task<const W: usize>(
         }
         if let Some(c) = task.affine.get_mut(k) {
             *c = match settings.transfer {
-                Transfer::Aflip => *c * nodes.kept + g.affine,
-                // The affine weights of the bilinear kernel are its gradients.
+                // The affine weights of the bilinear kernel are its gradients: of velocities that a node of hardly any
+                // mass may have they would become anything.
                 _ if W == 2 => g.gradient,
+                Transfer::Aflip => *c * nodes.kept + g.affine,
                 _ => g.affine,
             };
         }
