@@ -150,6 +150,13 @@ pub(crate) trait SlidingTips {
     /// Energy that drag behind a tip has taken out of the body since the last call [J/m].
     fn take_drag(&mut self, id: TipId) -> f64;
 
+    /// Lets the energy `energy` [J/m] that a tip has taken beyond what it needs, or that has ended since the last step,
+    /// drive the faces behind it apart within the next one. Whether there are such faces.
+    fn give_back(&mut self, id: TipId, energy: f64) -> bool;
+
+    /// Energy that was to go back into the body since the last call and found no faces [J/m].
+    fn take_refused(&mut self) -> f64;
+
     /// Energy that tips have given in the last step for what their cuts had left strained without force [J/m].
     fn take_settled(&mut self) -> Vec<(TipId, f64)>;
 

@@ -23,6 +23,7 @@ pub const CASES: &[Case] = &[
     cases::mirrored_branching::CASE,
     cases::pull_price::CASE,
     cases::turned_notch::CASE,
+    cases::dropped_disc::CASE,
     cases::kink_angles::CASE,
     cases::shear_notch::CASE,
     cases::wing_cracks::CASE,

@@ -57,6 +57,8 @@ pub(crate) struct Tip {
     /// What it had left of its balance when it came to rest or to its end [J/m], below zero what it owed. It pays for
     /// nothing but what its cuts have left strained.
     pub(crate) left_over: f64,
+    /// What its leaps have cost, over a last ligament or into two branches, as far as it has not been paid [J/m].
+    pub(crate) leaps: f64,
     /// Whether nothing but waves limits its speed.
     pub(crate) is_free: bool,
     /// Whether what lies ahead is too near for an integral: see [`Advance`](crate::growth::Advance).
@@ -86,6 +88,7 @@ impl Tip {
             balance: 0.0,
             most_balance: 0.0,
             left_over: 0.0,
+            leaps: 0.0,
             is_free: true,
             is_in_last_ligament: false,
             time_in_ligament: 0.0,
@@ -99,16 +102,28 @@ impl Tip {
         self.guide.as_ref().is_some_and(|guide| guide.due(0.0, 0.0).is_some())
     }
 
-    /// The part of the drag of its ties that acts: less the more the tip already has for its way. A tip that runs as
-    /// fast as waves and has more than it needs drives the faces apart with it, so that nothing is taken that pays for
-    /// nothing; what a lower limit holds back is lost to it. Around a tip that does not grow there is no drag: its body
-    /// keeps its energy.
+    /// The part of the drag of its ties that acts: less the more the tip already has for its way, so that nothing is
+    /// taken that pays for nothing. What a limit below the speed of waves holds back is lost to it. Around a tip that
+    /// does not grow there is no drag: its body keeps its energy.
     pub(crate) fn part_of_drag(&self) -> f64 {
         if self.state != TipState::Growing {
             return 0.0;
         }
-        let is_driven = self.is_free && self.most_balance > 0.0;
-        if is_driven { (1.0 - self.balance / self.most_balance).clamp(-1.0, 1.0) } else { 1.0 }
+        let is_balanced = self.is_free && self.most_balance > 0.0;
+        if is_balanced { (1.0 - self.balance / self.most_balance).clamp(0.0, 1.0) } else { 1.0 }
+    }
+
+    /// What of its balance it does not need, while nothing but waves limits its speed [J/m]: all at its end. What its
+    /// leaps have cost it pays with this first.
+    pub(crate) fn surplus(&mut self) -> f64 {
+        if !self.is_free {
+            return 0.0;
+        }
+        let needed = if self.state.is_live() { self.most_balance } else { 0.0 };
+        let paid = (self.balance - needed).min(self.leaps).max(0.0);
+        self.balance -= paid;
+        self.leaps -= paid;
+        (self.balance - needed).max(0.0)
     }
 
     /// What it can give for what its cuts have left strained [J/m]: while it runs, on credit too.
@@ -163,6 +178,7 @@ impl Tip {
         self.since_division = 0.0;
         self.balance *= 0.5;
         self.left_over *= 0.5;
+        self.leaps *= 0.5;
         (self.is_in_last_ligament, self.time_in_ligament) = (false, 0.0);
         self.pace = Pace { run: self.run(), ..Pace::default() };
         // Each branch goes its own way from here.
@@ -190,6 +206,7 @@ impl Tip {
                 &self.balance,
                 &self.most_balance,
                 &self.left_over,
+                &self.leaps,
                 &self.time_in_ligament,
             ],
         )?;

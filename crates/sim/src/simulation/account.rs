@@ -3,17 +3,14 @@
 use super::Simulation;
 use crate::crack::assessment::Assessment;
 use crate::crack::cracks::TipId;
+use crate::crack::tip::Tip;
 use crate::growth::{self, Cost};
 use fissure_scene::TipState;
 
 /// The most energy that a tip needs from one step to the next, as the length that it pays for, in cells. What the
 /// lattice releases per length varies within a cell: in one part of it a tip takes a little too much, in the next too
-/// little. What it has beyond this it gives back, or it is lost to what limits its speed.
+/// little. What it has beyond this it gives back, or it is lost to what limits its speed below that of waves.
 const BALANCE_CELLS: f64 = 0.5;
-
-/// The most that a tip carries over that gives back what it has too much, over what it needs: there drag gives as much
-/// as it takes otherwise.
-const MOST_CARRIED: f64 = 2.0;
 
 /// A speed limit of at least this part of the Rayleigh wave speed is that of waves. A lower one is the scene's or the
 /// material's: of a real crack that runs no faster, more is used up at the tip.
@@ -37,8 +34,7 @@ impl Simulation {
         let Some(tip) = self.state.cracks.tip_mut(id) else { return };
         tip.is_free = limit >= FREE * fastest && !tip.has_schedule();
         tip.most_balance = BALANCE_CELLS * self.scene.cell_size * cost;
-        let carried = if tip.is_free { MOST_CARRIED } else { 1.0 };
-        let kept = tip.balance.min(carried * tip.most_balance);
+        let kept = if tip.is_free { tip.balance } else { tip.balance.min(tip.most_balance) };
         if tip.state == TipState::Growing {
             // What it owed when it came to rest it still does.
             let owed = tip.left_over.min(0.0);
@@ -50,9 +46,23 @@ impl Simulation {
         }
     }
 
+    /// Tips give back what they have taken and cannot use.
+    pub(super) fn give_back(&mut self) {
+        let Some(sliding) = self.solver.sliding_mut() else { return };
+        let ids: Vec<TipId> = self.state.cracks.ids().collect();
+        for id in ids {
+            let surplus = self.state.cracks.tip_mut(id).map_or(0.0, Tip::surplus);
+            if surplus > 0.0 && sliding.give_back(id, surplus) {
+                self.state.crack_energy -= surplus;
+                self.state.cracks.tip_mut(id).into_iter().for_each(|tip| tip.balance -= surplus);
+            }
+        }
+    }
+
     /// Tips pay for what their cuts had left strained and the last step has let go of.
     pub(super) fn settle_strains(&mut self) {
         let Some(sliding) = self.solver.sliding_mut() else { return };
+        self.state.crack_energy += sliding.take_refused();
         for (id, energy) in sliding.take_settled() {
             self.state.crack_energy -= energy;
             self.state.cracks.tip_mut(id).into_iter().for_each(|tip| tip.pay(energy));

@@ -144,6 +144,7 @@ impl Simulation {
             tips.extend(assessed.map(|_| runner));
         }
         self.grow(tips, time);
+        self.give_back();
         self.branch_off(time);
         self.state.cracks.date(time);
         self.stages.enter(Stage::Between);
@@ -332,7 +333,7 @@ impl Simulation {
             }
             _ => {
                 let length = cracks.grow(id, &advance.points);
-                self.book_leap(id, assessed, length);
+                self.book_leap(&[id], assessed, length);
             }
         }
         let cracks = &mut self.state.cracks;
@@ -343,11 +344,18 @@ impl Simulation {
         cracks.set_end(id, advance.end);
     }
 
-    /// Books what a tip that jumps takes by its J; where tips slide, what a leap takes is what its cut does.
-    fn book_leap(&mut self, id: TipId, assessed: &Assessment, length: f64) {
+    /// Books what a tip that jumps takes by its J; where tips slide, what a leap takes is what its cut does, and what
+    /// it costs is to be paid with that.
+    fn book_leap(&mut self, ids: &[TipId], assessed: &Assessment, length: f64) {
+        let Some(&first) = ids.first() else { return };
+        let critical = growth::critical_release(&self.state.cracks, first, assessed, &self.scene, &self.elastic);
         if self.solver.sliding().is_none() {
-            let most = growth::critical_release(&self.state.cracks, id, assessed, &self.scene, &self.elastic);
-            self.state.crack_energy += assessed.released.clamp(0.0, most) * length;
+            // The first length of two branches together releases what one straight on would have.
+            self.state.crack_energy += assessed.released.clamp(0.0, critical) * length;
+            return;
+        }
+        for &id in ids {
+            self.state.cracks.tip_mut(id).into_iter().for_each(|tip| tip.leaps += critical * length);
         }
     }
 
@@ -371,12 +379,12 @@ impl Simulation {
         let [left, right] = branches;
         let cracks = &mut self.state.cracks;
         let points = [vec![cracks.position(id)], right].concat();
-        // The first length of both together releases what one straight on would have.
         let length = cracks.grow(id, &left);
         let Some(twin) = cracks.tip_mut(id).map(|tip| tip.divide(length)) else { return Vec::new() };
         let new = cracks.add(cracks.of(id).branch(id.crack, points, twin));
-        self.book_leap(id, assessed, length);
-        vec![id, TipId::new(new, End::End)]
+        let branches = vec![id, TipId::new(new, End::End)];
+        self.book_leap(&branches, assessed, length);
+        branches
     }
 
     /// From now on, between frames, tips at rest that cannot come near to growth are not measured: [`Simulation::tips`]

@@ -30,6 +30,7 @@ mod pieces;
 mod pressure;
 mod probe;
 mod probes;
+mod push;
 mod range;
 mod reader;
 mod rebound;
@@ -126,8 +127,8 @@ impl Total {
         let mut lattice = Self::lattice(scene, particles, cracks)?;
         lattice.cut_all();
         let probes = Probes::new(scene, &lattice, cracks);
-        let motion = Motion::initial(scene, &lattice);
-        let ties = Ties::new(&lattice, &motion, cracks);
+        let mut motion = Motion::initial(scene, &lattice);
+        let ties = Ties::new(&lattice, &mut motion, cracks);
         let falling = motion.power_of_gravity(lattice.mass(), scene.gravity);
         let done = ([0.0, 0.0, falling, 0.0], vec![Reaction::default(); scene.supports.len()]);
         Self::of_parts(scene, lattice, (motion, probes, ties, LastImpulses::default(), done), cracks)
@@ -307,7 +308,7 @@ impl Solver for Total {
         let power_before = self.loads.power(&scene.loads, middle, motion) + self.power_of_gravity;
         // v += Δt f/m, then what changes velocities by impulses.
         let kick = motion.kick(&lattice.inverse_mass, scene.gravity, self.damping, time_step);
-        ties.apply_drag(lattice.mass(), motion, cracks, kick);
+        ties.apply_drag(lattice, motion, cracks, kick);
         self.look_at_surfaces(cracks, kick, time_step);
         if self.contacts.are_possible() {
             let Self { lattice, ties, motion, probes, contacts, touching, .. } = self;
@@ -369,11 +370,11 @@ impl Solver for Total {
         self.colliders.refresh(&near, &self.lattice);
         self.contacts.refresh(&near, &turned, &self.lattice, cracks);
         let recut = (boxes.len() == changes.boxes.len()).then_some(&self.lattice.recut[..]);
-        let retied = self.ties.refresh(&near, recut, &self.lattice, &self.motion, cracks);
+        let (retied, slowed) = self.ties.refresh(&near, recut, &self.lattice, &mut self.motion, cracks);
         self.supports.refresh(&near, &self.scene, &self.lattice, (&self.ties, &retied));
         self.touching.change(&near, has_mouthed);
         self.rebound.change();
-        held - self.ties.held(&self.motion) + lost
+        held - self.ties.held(&self.motion) + lost + slowed
     }
 
     fn begin_run(&mut self) {
@@ -486,6 +487,14 @@ impl SlidingTips for Total {
 
     fn take_drag(&mut self, id: TipId) -> f64 {
         self.ties.take_drag(id)
+    }
+
+    fn give_back(&mut self, id: TipId, energy: f64) -> bool {
+        self.ties.give_back(&self.lattice, &self.motion, id, energy)
+    }
+
+    fn take_refused(&mut self) -> f64 {
+        self.ties.take_refused()
     }
 
     fn take_settled(&mut self) -> Vec<(TipId, f64)> {

@@ -15,7 +15,7 @@
 //! **Drag.** A crack that runs fast softens its ties faster than nodes can part, and a part of what is released would
 //! stay in the lattice as waves of a few cells. A viscous force on the opening takes it: at 1500 m/s in steel (0.51
 //! c_R) ties and drag together take 1.7 % more than ∫ G da (`fissure verify moving-crack`). A tip that runs as fast as
-//! waves has more than its way costs: the drag then turns round and drives the faces apart.
+//! waves takes more than its way costs, and [gives it back](super::push).
 //!
 //! **Inertia.** A stiff spring between two light fields would ask for a short time step. A tie of stiffness k therefore
 //! carries the kinetic energy ½ m |δ̇|² with m ≥ k/ω², ω the highest frequency of a plane wave in an uncut lattice of
@@ -57,7 +57,7 @@ pub(super) struct Tie {
 
 /// Displacements of two fields that differ by less than this part of their size differ by round-off only: the faces of
 /// a crack that has just come still lie on each other.
-const ROUND_OFF: f64 = 1e-12;
+pub(super) const ROUND_OFF: f64 = 1e-12;
 /// Fields that are farther from each other than this, in cells, have come apart. Of 6,000 new ties of the examples the
 /// fields of a split that has just been made lay within 1e-15, those of an open crack more than 1e-6 from each other.
 const APART: f64 = 1e-9;
@@ -240,11 +240,32 @@ impl Tie {
         }
     }
 
+    /// Lets the opening go on with the momentum that it had with the inertia of the tie `before`, where that was less:
+    /// what is made heavier in flight gets slower, or it would come with energy that nothing has given. Returns what
+    /// the fields lose by it of what the leapfrog keeps [J/m].
+    pub(super) fn keep_momentum(&self, before: &Self, mass: &[f64], motion: &mut Motion) -> f64 {
+        if self.inertia <= before.inertia {
+            return 0.0;
+        }
+        let [a, b] = [self.first, self.second].map(|field| field as usize);
+        let reduced = 1.0 / (1.0 / mass[a] + 1.0 / mass[b]);
+        let rate = self.opening(&motion.velocity);
+        let change = rate * (before.inertia - self.inertia) / (reduced + self.inertia);
+        // Of ½ v(t − Δt/2) · M v(t + Δt/2), with the force of the fields alone as the last step has shown it.
+        let acceleration = motion.acceleration(b) - motion.acceleration(a);
+        let force = acceleration * (reduced + before.inertia) + before.stretch(&motion.displacement) * before.stiffness;
+        for axis in 0..2 {
+            motion.velocity[axis][a] -= change[axis] * reduced / mass[a];
+            motion.velocity[axis][b] += change[axis] * reduced / mass[b];
+        }
+        -change.dot(&(reduced * (rate + 0.5 * change) + 0.5 * motion.last_step * force))
+    }
+
     pub(super) fn ahead_of(&self, tip: Point, direction: Vector, cell_size: f64) -> f64 {
         (self.place - tip).dot(&direction) / cell_size
     }
 
-    /// The impulse of the part `part` of the drag, below zero where it drives, within a kick of `kick` [s] between the
+    /// The impulse of the part `part` of the drag within a kick of `kick` [s] between the
     /// two fields [N s/m], none where there is none. Only at the length of the opening: a body that turns, and the
     /// openings with it, is not dragged at.
     pub(super) fn drag(&mut self, part: f64, mass: &[f64], motion: &Motion, kick: f64) -> Option<Vector> {
@@ -255,8 +276,7 @@ impl Tie {
         let (mass_a, mass_b) = (mass[a], mass[b]);
         let reduced = mass_a * mass_b / (mass_a + mass_b);
         let inertia = reduced + self.inertia;
-        let drag = part * self.drag * kick / inertia;
-        let kept = if drag > 0.0 { 1.0 / (1.0 + drag) } else { 1.0 - drag };
+        let kept = 1.0 / (1.0 + part * self.drag * kick / inertia);
         let u = &motion.displacement;
         // What is apart by round-off only has no direction.
         let least = ROUND_OFF * (u[0][a].abs() + u[1][a].abs() + u[0][b].abs() + u[1][b].abs());
@@ -266,5 +286,48 @@ impl Tie {
         // What an impulse takes out of the leapfrog is its work at the mean of the velocities before and after a kick.
         self.dragged += inertia * (1.0 - kept) * speed * 0.5 * (before + kept * speed);
         Some(direction * (speed * (1.0 - kept) * reduced))
+    }
+
+    /// What it has given up since it began to soften, as far as its opening `u` is what it has been [J/m].
+    pub(super) fn released(&self, u: &FieldVectors) -> f64 {
+        let softened = self.scale * softness(FIRST_RELEASED) - self.stiffness;
+        0.5 * softened * self.stretch(u).norm_squared()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    /// Truth: two bodies that collide and go on together (momentum, and what is lost of ½ m v²). A tie of fields that
+    /// fly apart becomes stiffer, and so heavier: (μ + m) v stays, μ the reduced mass; the fields lose what both had
+    /// together less what both have and the tie holds more. One that becomes lighter changes nothing.
+    #[test]
+    fn what_gets_heavier_in_flight_gets_slower() {
+        let mass = [3.0, 1.5];
+        let [light, heavy] = [0.4, -0.2].map(|ahead| {
+            let stiffness = [2e3, 3e3];
+            Tie::new([0, 1], (0, Point::new(0.0, 0.0)), stiffness, 0.01, -ahead)
+        });
+        let mut motion = Motion::at_rest(2);
+        motion.velocity = [vec![0.3, -1.1], vec![-0.2, 0.9]];
+        let before = motion.clone();
+        assert!(light.inertia < heavy.inertia);
+        assert_eq!(light.keep_momentum(&heavy, &mass, &mut motion), 0.0);
+        assert_eq!(motion.velocity, before.velocity);
+        let lost = heavy.keep_momentum(&light, &mass, &mut motion);
+        let reduced = mass[0] * mass[1] / (mass[0] + mass[1]);
+        let [old, new] = [&before, &motion].map(|motion| light.opening(&motion.velocity));
+        let expected = old * ((reduced + light.inertia) / (reduced + heavy.inertia));
+        assert!((new - expected).norm() < 1e-14, "{new} {expected}");
+        for axis in 0..2 {
+            let momentum = |motion: &Motion| (0..2).map(|k| mass[k] * motion.velocity[axis][k]).sum::<f64>();
+            assert!((momentum(&motion) - momentum(&before)).abs() < 1e-14);
+        }
+        let collision = 0.5 * (reduced + light.inertia) * (old.norm_squared() - old.dot(&new));
+        let held = heavy.kinetic_energy(&motion.velocity) - light.kinetic_energy(&before.velocity);
+        assert!((lost - held - collision).abs() < 1e-14, "{lost} {held} {collision}");
+        assert!(collision > 0.0);
     }
 }

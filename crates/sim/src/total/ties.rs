@@ -4,6 +4,7 @@ use super::field_vectors::FieldVectors;
 use super::lattice::Lattice;
 use super::motion::Motion;
 use super::near::Near;
+use super::push::{self, Impulse, Push, Released};
 use super::tie::{self, Tie};
 use crate::boundary::constraints::Inertia;
 use crate::crack::cracks::{Cracks, TipId};
@@ -31,7 +32,13 @@ pub(super) struct Coupled {
 pub(super) struct Ties {
     of_tip: BTreeMap<TipId, Vec<Tie>>,
     at_node: BTreeMap<u32, Coupled>,
-    /// The same in lists.
+    /// What is given back in the next step.
+    pushes: Vec<Push>,
+    /// What the last ties of tips had given up that have come to their ends since the last step.
+    ended: BTreeMap<TipId, Released>,
+    /// What was to be given back and found no faces, since it was last asked for [J/m].
+    refused: f64,
+    /// `at_node` in lists.
     #[serde(skip)]
     flat: Flat,
 }
@@ -89,6 +96,13 @@ impl Ties {
         self.of_tip.keys().try_for_each(|id| id.check(cracks))?;
         self.all().try_for_each(|tie| tie.check(fields, nodes))?;
         saved::below("the node of a tie", self.at_node.keys().copied(), nodes)?;
+        self.pushes.iter().try_for_each(|push| push.check(nodes))?;
+        for (id, released) in &self.ended {
+            id.check(cracks)?;
+            saved::below("the node of a tip that has ended", released.iter().map(|&(node, _)| node), nodes)?;
+            saved::finite("a tip that has ended", released.iter().map(|(_, energy)| energy))?;
+        }
+        saved::finite("ties", [&self.refused])?;
         for group in self.at_node.values() {
             saved::below("coupled ties", group.fields.iter().copied(), fields)?;
             saved::ensure(group.mixing.len() == group.fields.len().pow(2), "a coupling of ties")?;
@@ -147,9 +161,10 @@ impl Ties {
         self.of_tip.get(&id)?.iter().map(|tie| tie.opening(u).norm()).reduce(f64::max)
     }
 
-    /// Elastic energy for the displacement `u` [J/m].
+    /// Elastic energy for the displacement `u`, with what is given back in the next step [J/m].
     pub(super) fn energy(&self, u: &FieldVectors) -> f64 {
-        self.all().map(|tie| tie.energy(u)).sum()
+        let waiting: f64 = self.pushes.iter().map(|push| push.energy).sum();
+        waiting + self.all().map(|tie| tie.energy(u)).sum::<f64>()
     }
 
     /// Kinetic energy for the velocity `v` [J/m].
@@ -163,7 +178,7 @@ impl Ties {
     }
 
     /// The ties of all tips.
-    pub(super) fn new(lattice: &Lattice, motion: &Motion, cracks: &Cracks) -> Self {
+    pub(super) fn new(lattice: &Lattice, motion: &mut Motion, cracks: &Cracks) -> Self {
         let mut ties = Self::default();
         ties.lay_where(lattice, motion, cracks, |_| true, |_| false);
         ties
@@ -196,15 +211,15 @@ impl Ties {
 
     /// Lays the ties anew of tips whose ties reach to where something has changed: a field that has lost its mass, to
     /// another crack maybe, cannot be tied. `recut`: the particles of which parts see other nodes than before; none
-    /// where these are not all known. Gives the fields whose inertia is another one.
+    /// where these are not all known. Gives the fields whose inertia is another one, and the energy that is lost [J/m].
     pub(super) fn refresh(
         &mut self,
         near: &Near,
         recut: Option<&[usize]>,
         lattice: &Lattice,
-        motion: &Motion,
+        motion: &mut Motion,
         cracks: &Cracks,
-    ) -> Vec<u32> {
+    ) -> (Vec<u32>, f64) {
         let reach = (WINDOW.hypot(WINDOW) + 1.0) * lattice.grid.cell_size;
         // Particles are looked for in a box that may be a row larger.
         let seen = lattice.reach() * lattice.grid.cell_size + 1.001 * lattice.particles.spacing;
@@ -218,24 +233,33 @@ impl Ties {
     fn lay_where(
         &mut self,
         lattice: &Lattice,
-        motion: &Motion,
+        motion: &mut Motion,
         cracks: &Cracks,
         is_changed: impl Fn(Point) -> bool,
         is_as_before: impl Fn(Point) -> bool,
-    ) -> Vec<u32> {
+    ) -> (Vec<u32>, f64) {
         if !lattice.has_ties() {
-            return Vec::new();
+            return (Vec::new(), 0.0);
         }
+        let mut lost = 0.0;
         let mut changed = BTreeSet::new();
         for id in cracks.ids().filter(|&id| is_changed(cracks.position(id))) {
             let is_tip = cracks.end(id) == CrackEnd::Tip;
             let before = self.of_tip.remove(&id).unwrap_or_default();
+            if !is_tip && !before.is_empty() {
+                let released = released_by(&before, motion);
+                // What has not begun to soften, the end has broken.
+                let held = || before.iter().map(|tie| (tie.node, tie.energy(&motion.displacement))).collect();
+                let has_softened = released.iter().any(|&(_, released)| released > 0.0);
+                self.ended.insert(id, if has_softened { released } else { held() });
+            }
             let asked = if is_tip { ties_at(lattice, cracks, id, &before, &is_as_before) } else { Vec::new() };
             let mut ties = Vec::with_capacity(asked.len());
             for &(mut tie) in &asked {
                 let same = same_tie(&tie, &asked, &before);
                 if same.is_some() || tie.lies_together(&motion.displacement, lattice.grid.cell_size) {
                     tie.take_over(same, &motion.displacement);
+                    lost += same.map_or(0.0, |before| tie.keep_momentum(before, lattice.mass(), motion));
                     ties.push(tie);
                 }
             }
@@ -257,7 +281,7 @@ impl Ties {
         }
         self.flat.is_known &= changed.is_empty();
         fields.extend(self.fields_at(&changed));
-        fields
+        (fields, lost)
     }
 
     /// Softens the ties of a tip to where it is now. Gives the fields whose inertia is another one.
@@ -368,25 +392,60 @@ impl Ties {
     }
 
     /// Lets the drag of the ties around growing tips act within a kick of `kick` [s], as far as each tip needs what
-    /// it takes.
-    pub(super) fn apply_drag(&mut self, mass: &[f64], motion: &mut Motion, cracks: &Cracks, kick: f64) {
+    /// it takes, and then what tips give back.
+    pub(super) fn apply_drag(&mut self, lattice: &Lattice, motion: &mut Motion, cracks: &Cracks, kick: f64) {
+        let mass = lattice.mass();
         let part = |id: TipId| cracks.tip(id).map_or(0.0, Tip::part_of_drag);
         let growing = self.of_tip.iter_mut().map(|(id, ties)| (part(*id), ties)).filter(|(part, _)| *part != 0.0);
         // All see the velocities without drag: where the ties of two tips share a field, neither comes before the
         // other.
         let of = |part: f64, tie: &mut Tie| {
-            tie.drag(part, mass, motion, kick).map(|impulse| ([tie.first, tie.second], impulse))
+            let impulse = tie.drag(part, mass, motion, kick)?;
+            Some(Impulse { fields: [tie.first, tie.second], impulse })
         };
-        let impulses: Vec<([u32; 2], Vector)> =
+        let impulses: Vec<Impulse> =
             growing.flat_map(|(part, ties)| ties.iter_mut().filter_map(move |tie| of(part, tie))).collect();
-        for ([first, second], impulse) in impulses {
-            let (a, b) = (first as usize, second as usize);
-            for axis in 0..2 {
-                motion.velocity[axis][a] += impulse[axis] / mass[a];
-                motion.velocity[axis][b] -= impulse[axis] / mass[b];
+        impulses.iter().for_each(|impulse| impulse.act(mass, motion));
+        self.ended.clear();
+        let pushes = std::mem::take(&mut self.pushes);
+        let of = |push: &Push| push.impulse(lattice, motion, |node, fields| self.inertia_between(node, fields));
+        let impulses: Vec<Option<Impulse>> = pushes.iter().map(of).collect();
+        for (push, impulse) in pushes.iter().zip(impulses) {
+            match impulse {
+                Some(impulse) => impulse.act(mass, motion),
+                None => self.refused += push.energy,
             }
         }
     }
+
+    /// Inertia of the opening of two fields of a node [kg/m].
+    fn inertia_between(&self, node: u32, fields: [u32; 2]) -> f64 {
+        let members = self.at_node.get(&node).map_or(&[][..], |group| &group.members[..]);
+        let ties = members.iter().filter_map(|(tip, k)| self.of_tip.get(tip)?.get(*k));
+        ties.filter(|tie| [tie.first, tie.second] == fields).map(|tie| tie.inertia).sum()
+    }
+
+    /// Lets the energy `energy` [J/m] that a tip has taken drive apart, within the next step, the faces that it has
+    /// taken it from. Of a tip that has come to its end in this step, these are the last that it had. Whether there
+    /// are any.
+    pub(super) fn give_back(&mut self, lattice: &Lattice, motion: &Motion, id: TipId, energy: f64) -> bool {
+        let ties = self.of_tip.get(&id).map_or(&[][..], Vec::as_slice);
+        let ended = self.ended.remove(&id).unwrap_or_default();
+        let released = if ties.is_empty() { ended } else { released_by(ties, motion) };
+        let before = self.pushes.len();
+        self.pushes.extend(push::share_out(lattice, motion, (id, energy), released));
+        self.pushes.len() > before
+    }
+
+    /// Takes what was to go back into the body since the last call and found no faces [J/m].
+    pub(super) fn take_refused(&mut self) -> f64 {
+        std::mem::take(&mut self.refused)
+    }
+}
+
+/// What each of some ties has given up.
+fn released_by(ties: &[Tie], motion: &Motion) -> Released {
+    ties.iter().map(|tie| (tie.node, tie.released(&motion.displacement))).collect()
 }
 
 /// Masses of fields, and what ties add to them.

@@ -1,7 +1,7 @@
 //! What a crack takes out of a body while it runs.
 
 use crate::common::{add_crack, plate, rectangle, run, set_velocity};
-use fissure_scene::{Curve, Guide, Point, Scene, Selection, TipState, Vector};
+use fissure_scene::{Branching, Curve, FrameSettings, Guide, Point, Scene, Selection, TipState, Vector};
 use fissure_sim::{Elastic, Simulation};
 
 /// Where the crack is, between two rows of nodes and two columns of particles [m].
@@ -44,6 +44,36 @@ fn a_running_crack_takes_what_its_length_costs() {
             assert!(is_paid, "{courant}: {taken} and {lost} instead of {price}");
         }
         assert_eq!(simulation.tips()[0].state, TipState::LeftBody);
+    }
+}
+
+/// Truth: the first law, and Griffith's. Halves that fly apart ten times as fast as above drive the crack by some
+/// hundred times what its length costs, at its highest speed; it takes no more than that for it, and the body has the
+/// rest. Where it divides, into twelve, less is known of the first lengths of branches.
+#[test]
+fn a_crack_that_is_driven_hard_takes_what_its_length_costs() {
+    let divides = Branching { release_ratio: 3.0, half_angle: 0.5, spacing: 1.5 };
+    for (branching, bound) in [(None, 0.02), (Some(divides), 0.05)] {
+        let mut scene = thrown_apart();
+        scene.bodies[0].velocities.iter_mut().for_each(|v| v.velocity *= 10.0);
+        scene.growth.branching = branching;
+        scene.frames = FrameSettings { last: 60, rate: 5000.0, ..scene.frames };
+        let modulus = Elastic::new(&scene.materials[0], scene.plane).effective_modulus;
+        let critical = scene.materials[0].fracture_toughness.powi(2) / modulus;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let first = simulation.energy_held();
+        let length = |simulation: &Simulation| -> f64 {
+            let ways = simulation.frame().cracks;
+            let of = |way: &[Point]| way.windows(2).map(|ends| (ends[1] - ends[0]).norm()).sum::<f64>();
+            ways.iter().map(|crack| of(&crack.rest)).sum()
+        };
+        let drawn = length(&simulation);
+        run(&mut simulation, 60).unwrap();
+        let (taken, price) = (simulation.energies().crack, critical * (length(&simulation) - drawn));
+        let lost = first - simulation.energy_held();
+        assert!(price > 5.0 * critical, "{price} of {critical}");
+        assert!((taken / price - 1.0).abs() < bound, "{taken} instead of {price}");
+        assert!((lost - taken).abs() < 2e-3 * first, "{lost} of {first} lost, {taken} taken");
     }
 }
 

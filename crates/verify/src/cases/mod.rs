@@ -12,6 +12,7 @@ pub(crate) mod crack_pairs;
 pub(crate) mod double_cantilever;
 pub(crate) mod double_notch;
 pub(crate) mod drawn_kinks;
+pub(crate) mod dropped_disc;
 pub(crate) mod edge_crack;
 pub(crate) mod free_flight;
 pub(crate) mod hertz;

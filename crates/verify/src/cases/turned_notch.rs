@@ -68,11 +68,6 @@ fn compute(options: &Options, tally: &mut Tally<'_>) -> Result<(), SimulationErr
         let price = critical * (tip.length - NOTCH);
         tally.relative(format!("energy taken by ∫G_c da, {of}"), "", taken / price, 1.0, 0.02);
     }
-    tally.note(
-        "Under 20 MN/m the crack, as drawn, runs at its highest speed, 0.99 c_R, for nearly nine tenths of its way, while waves make J swing from −3 to 5 G_c (a tenth of \
-         all looks is beyond either). What arrives and is not taken by new length is used up between the faces. It is 127 % in 40 cells, 28 in 80 and 32 in 160: more \
-         cells do not cure it.",
-    );
     Ok(())
 }
 
